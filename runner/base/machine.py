@@ -99,7 +99,7 @@ def describe_mixture(counts: Mapping[Machine, int]) -> str:
     groups: Counter[str] = Counter()
     for machine, count in counts.items():
         groups[machine.in_words(names) or "an unknown machine"] += count
-    told = "; ".join(f"{count} run{'s' if count > 1 else ''} on {text}" for text, count in sorted(groups.items()))
+    told = "; ".join(f"{count} run{'s' if count > 1 else ''} on {text}" for text, count in groups.most_common())
     return f"made on {len(groups)} machines, which may round differently: {told}"
 
 

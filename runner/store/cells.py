@@ -248,13 +248,14 @@ def _describe_origin(known: Cell, name: str, run: Run, baseline: SweepBaseline) 
         return "the baseline or the run does not name machine and versions; a change may be rounding or a library"
     if (their_machine, their_versions) == (machine, versions):
         return ""
-    apart = [_against(machine, their_machine)] if their_machine != machine else []
-    apart += [
+    others = [
         f"{library} {their_versions.get(library, 'none')} against {versions.get(library, 'none')} here"
         for library in dict.fromkeys([*their_versions, *versions])
         if their_versions.get(library) != versions.get(library)
     ]
-    return f"the baseline is of another machine or other versions, which may round differently: {'; '.join(apart)}"
+    of_machine = [_against(machine, their_machine)] if their_machine != machine else []
+    what = " and ".join([*["another machine"] * len(of_machine), *["other library versions"] * bool(others)])
+    return f"the baseline is of {what}, which may round differently: {'; '.join([*of_machine, *others])}"
 
 
 def _against(machine: Machine, theirs: Machine) -> str:

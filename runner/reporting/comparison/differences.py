@@ -85,7 +85,7 @@ class ConfigDifferences:
         apart = f"{machine.a} against {machine.b}"
         if others:
             return f"{a} and {b} differ in no value, but in the machine ({apart}) and in {', '.join(others)}."
-        return f"{a} and {b} differ only in the machine: {apart}. What follows is rounding, which may grow."
+        return f"{a} and {b} differ only in the machine: {apart}. What follows may be rounding, which can grow."
 
 
 def find_differences(pairs: Pairs) -> ConfigDifferences:

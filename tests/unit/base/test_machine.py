@@ -57,8 +57,8 @@ def test_a_mixture_is_described_by_the_parts_that_differ():
     assert describe_mixture(Counter({ALPHA: 3})) == describe_mixture({}) == ""
     assert describe_mixture(Counter({ALPHA: 3, Machine(): 1, read_machine(FORMER): 1})) == ""
     assert describe_mixture(Counter({ALPHA: 3, BETA: 1})) == (
-        "made on 2 machines, which may round differently: 1 run on NumPy X86_V3, OpenBLAS Haswell; "
-        "3 runs on NumPy X86_V3 X86_V4, OpenBLAS SkylakeX"
+        "made on 2 machines, which may round differently: 3 runs on NumPy X86_V3 X86_V4, OpenBLAS SkylakeX; "
+        "1 run on NumPy X86_V3, OpenBLAS Haswell"
     )
     assert "1 run on an unknown machine" in describe_mixture(Counter({ALPHA: 3, BETA: 1, Machine(): 1}))
 
