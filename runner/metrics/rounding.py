@@ -10,6 +10,7 @@ from typing import Any
 
 import numpy as np
 
+from runner.base import machine
 from runner.base.arrays import FloatArray
 from runner.base.quantities import ROUNDING
 from runner.base.trace import Trace
@@ -17,7 +18,7 @@ from runner.base.trace import Trace
 STEP = 2.0**-52
 """Displacement of each joint at the start, in rad or m: the distance from 1 to the next number in double precision."""
 
-SENSITIVE = 1e-6
+SENSITIVE = machine.ROUNDING
 """Relative change of a metric above which it is sensitive to rounding, as in `runner check`."""
 
 Metrics = Mapping[str, float | None]

@@ -10,6 +10,7 @@ import yaml
 
 from runner.base.dotted_keys import dotted, leaves
 from runner.base.errors import ConfigError, RunnerError
+from runner.base.machine import read_machine
 from runner.base.quantities import above_rounding, number, quantity, with_powers
 from runner.config.compose.compose import compose
 from runner.metrics.caveats.versions import changes_since
@@ -21,7 +22,7 @@ from runner.reporting.metric_titles import capital, key_metrics, title
 from runner.reporting.plant_step import describe_plant, percent
 from runner.reporting.spec_blocks import spec_abstract, spec_blocks
 from runner.reporting.table import Column, numbers
-from runner.reporting.words import PLANT, in_words
+from runner.reporting.words import PLANT, in_words, join_values
 from runner.store import Run
 from runner.store.baselines import check_run, find_shipped
 
@@ -202,14 +203,14 @@ def provenance(runs: Sequence[Run]) -> Provenance:
     record = [run.provenance for run in runs]
 
     def join(values: Sequence[Any]) -> str:
-        return ", ".join(dict.fromkeys(str(value) for value in values))
+        return join_values(list(dict.fromkeys(str(value) for value in values)))
 
     versions = (f"{name} {join([r['versions'][name] for r in record])}" for name in record[0]["versions"])
     rows = [
         ("plant", _plants(runs)),
         ("commit", join([r["commit"] or "none (installed package)" for r in record])),
         ("seed", _seeds({int(r["seed"]) for r in record})),
-        ("machine", join([r["machine"] for r in record])),
+        ("machine", join([read_machine(r["machine"]).text for r in record])),
         ("software", ", ".join(versions)),
         ("made on", join(sorted(str(r["date"]) for r in record))),
     ]

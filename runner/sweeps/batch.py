@@ -6,6 +6,7 @@ import numpy as np
 
 from runner import store
 from runner.base.errors import StoreError
+from runner.base.machine import this_machine
 from runner.config.run import RunConfig
 from runner.config.settings import RunSettings
 from runner.metrics.summary import MOST_LISTED
@@ -91,7 +92,7 @@ def _rows(runs: Iterable[Named], texts: JsonTexts, batcher: BatchSimulator) -> I
         )
         for (name, run), record in zip(some, records, strict=True):
             config = run.config
-            end = store.Outcome(name, "", False, len(run.caveats.caveats))
+            end = store.Outcome(name, "", False, len(run.caveats.caveats), this_machine())
             yield ShardRow(end, texts.of(config.resolved), config.arm.urdf, record, metrics, run.values)
 
 

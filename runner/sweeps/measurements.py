@@ -14,6 +14,7 @@ from runner.base import progress
 from runner.base.arrays import FloatArray
 from runner.base.dotted_keys import get, split_override
 from runner.base.errors import RunnerError, StoreError, unknown
+from runner.base.machine import Machine
 from runner.store.axes import Axis, axes_of, find_cells, make_axis
 from runner.store.finished import Finished, finer_names, read_finer
 from runner.store.run import Run
@@ -51,6 +52,7 @@ class Measurements:
         command: The command that makes the sweep or run.
         missing: Number of cells that are not stored.
         damage: Damaged files, a message for each.
+        machines: Distinct machines that made the runs.
     """
 
     axes: Sequence[Axis]
@@ -73,6 +75,7 @@ class Measurements:
     command: str = ""
     missing: int = 0
     damage: Sequence[str] = ()
+    machines: Sequence[Machine] = ()
 
     @property
     def failed(self) -> int:
@@ -327,6 +330,7 @@ def _measured(overrides: Sequence[Sequence[str]], gathered: Gathered) -> Measure
         gathered.seeds,
         resolved.differences(axes),
         [(config, np.concatenate(members)) for config, members in gathered.configs],
+        machines=list(gathered.machines),
         rounding=gathered.rounding,
     )
 

@@ -7,6 +7,7 @@ from typing import Any
 import numpy as np
 
 from runner.base.dotted_keys import dotted, leaves
+from runner.base.machine import read_machine
 from runner.base.sanitize import one_line
 from runner.reporting.answers import EXPLAINED, HEADER, Answer, Asked, ask, sentences, short_table
 from runner.reporting.comparison.differences import Value, find_differences
@@ -31,7 +32,7 @@ ALL = "--all prints every metric and the method, --json all numbers."
 """Last line of a short comparison."""
 
 _MOST_ROWS = 15  # of a short table
-# Possible causes of a difference besides the config; date, machine and command do not affect the physics.
+# Possible causes of a difference besides the config; date and command do not affect the result.
 _PROVENANCE = ("commit", "versions", "plant_step")
 
 
@@ -114,7 +115,11 @@ def run_lines(
     yield _changed_keys("config", [simulated_part(run.config) for run in runs], [a, b])
     if runs[0].urdf != runs[1].urdf:
         yield "  the text of robot.urdf differs"
-    made_by = [{key: run.provenance[key] for key in _PROVENANCE if key in run.provenance} for run in runs]
+    made_by = [
+        {key: run.provenance[key] for key in _PROVENANCE if key in run.provenance}
+        | {"machine": {part: text for part, text in read_machine(run.provenance["machine"]).record().items() if text}}
+        for run in runs
+    ]
     yield _changed_keys("provenance", made_by, [a, b])
     yield ""
     names = metrics or ([name for side in sides for name in side.values] if everything else main_metrics(sides))
