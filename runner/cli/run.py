@@ -253,6 +253,7 @@ def print_sweep(ended: "Ended") -> int:
 def _print_cells(ended: "Ended", axes: "Sequence[Axis]") -> None:
     """Print the numbers of runs, the answer of the sweep, and the next commands."""
     from runner import store
+    from runner.base.machine import describe_mixture
     from runner.reporting.sweep.question import in_short
     from runner.reporting.sweep.subject import choose
     from runner.sweeps.finer_step import work_out_sweep
@@ -271,7 +272,7 @@ def _print_cells(ended: "Ended", axes: "Sequence[Axis]") -> None:
             from runner.reporting.sweep.spec import summary  # imports charts, which takes long
 
             spec = summary(subject, sweep)
-    for line in filter(None, (text, answer, spec)):
+    for line in filter(None, (text, describe_mixture(ended.ends.machines), answer, spec)):
         print(one_line(f"runner: {line}"), file=sys.stderr)
     here = ended.outputs.resolve() == outputs_dir().resolve()
     name = WORD if here else str(ended.folder)

@@ -122,6 +122,11 @@ THRESHOLDS: Mapping[str, tuple[str, Any, str]] = {
         _Share,
         "Allowed integration error of a metric, as a fraction; 1 disables the rule.",
     ),
+    "rounding_grows": (
+        "share",
+        _Share,
+        "Allowed change of a metric through rounding, as a fraction; 1 disables the rule.",
+    ),
 }
 
 """Key, type and meaning of the threshold of each caveat rule; the rules are in runner/metrics/caveats."""

@@ -6,10 +6,10 @@ import shlex
 import subprocess
 from collections.abc import Mapping, Sequence
 from functools import cache, lru_cache
-from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from runner.base.engines import STAND_IN, installed_versions
+from runner.base.machine import this_machine
 from runner.base.paths import package_dir
 from runner.plugins import discovery
 from runner.statistics.spec import today
@@ -35,7 +35,7 @@ def describe_origin(composed: "Composed", *subcommand: str) -> dict[str, Any]:
         "plugins": discovery.digests(),
         "commit": commit(),
         "versions": versions(),
-        "machine": machine(),
+        "machine": this_machine().record(),
     }
 
 
@@ -108,15 +108,3 @@ def commit() -> str | None:
 def versions() -> dict[str, str]:
     """Return the versions of Python and of the libraries that results depend on."""
     return {"python": platform.python_version(), **installed_versions(_LIBRARIES), **evaluator()}
-
-
-@cache
-def machine() -> str:
-    """Return the kind of machine: processor and system, no names."""
-    processor = platform.machine()
-    try:
-        lines = Path("/proc/cpuinfo").read_text().splitlines()
-        processor = next((line.partition(":")[2].strip() for line in lines if line.startswith("model name")), processor)
-    except OSError:
-        pass
-    return f"{processor}, {platform.system()} {platform.machine()}"

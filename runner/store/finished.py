@@ -85,7 +85,8 @@ class Finished(Outcomes):
         caveats = np.concatenate([part.caveats for part in parts] or [np.zeros(0, dtype=np.int32)])
         failed = np.flatnonzero(rank[kept]).tolist()
         failures = {place: parts[self.shard[place]].failures.get(int(self.row[place]), "") for place in failed}
-        super().__init__(names[kept], rank[kept], caveats[kept], failures)
+        machines = np.concatenate([part.machines for part in parts] or [np.zeros(0, dtype=object)])
+        super().__init__(names[kept], rank[kept], caveats[kept], failures, machines[kept])
 
     def folders(self, names: Names) -> set[str]:
         """Return the given runs that may have their own run folder."""

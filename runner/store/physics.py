@@ -36,8 +36,8 @@ _TABLE = """
     controllers/macro_mini: inertial_damping macro_mini stage_loops
     controllers/operational_space: operational_space tip_task whole_body
     environments: __init__=environments.__init__ external_wrench=interaction free hand push wall
-    metrics: __init__=metrics.__init__ contact=metrics.contact effort family plant_error positioning reaching summary
-        tracking
+    metrics: __init__=metrics.__init__ contact=metrics.contact effort family plant_error positioning reaching
+        rounding summary tracking
     plants: __init__=plants.__init__ bullet bullet_servers compiled_friction compiled_motion=compiled.motion
         computation=plants.computation decoupled flexible_config flexible_joints=plants.flexible_joints friction
         friction_law kinematic motor_limits mujoco plant=plants.plant rk4 rk4_flexible_links servo wrappers=touched

@@ -68,7 +68,7 @@ class _Provenance(_Part):
     command: str
     commit: str | None
     versions: dict[str, str]
-    machine: str
+    machine: str | dict[str, str]
     seed: int
     plant_step: float
     warnings: list[str]

@@ -127,6 +127,12 @@ class Run(Stored):
         return error
 
     @property
+    def rounding(self) -> Mapping[str, Any] | None:
+        """Growth of rounding errors in repetition 0 (docs/stored_runs.md); None if it was not requested."""
+        growth: Mapping[str, Any] | None = self.record.get("rounding")
+        return growth
+
+    @property
     def caveat_rules(self) -> Mapping[str, Any] | None:
         """Digest and thresholds of the rules that found the caveats; None for an aborted run."""
         rules: Mapping[str, Any] | None = self.record.get("caveat_rules")

@@ -74,6 +74,8 @@ def make_record(result: RunResult) -> dict[str, Any]:
     record["metrics"] = {metric: summary.record() for metric, summary in result.metrics.items()}
     if result.plant_error is not None:
         record["plant_error"] = result.plant_error.record()
+    if result.rounding is not None:
+        record["rounding"] = result.rounding.record()
     record["timing"] = dict(result.timing)
     record["provenance"] = dict(result.provenance)
     return record

@@ -5,11 +5,13 @@ import fcntl
 import math
 import os
 import time
-from collections.abc import Iterator, Sequence
+from collections import Counter
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
 from runner.base.errors import RunnerError
+from runner.base.machine import Machine
 from runner.store.finished import Finished
 from runner.store.seal import DamagedError, read_json
 from runner.store.sweep import Sweep
@@ -74,6 +76,7 @@ class Status:
         at_work: True if a sweep is running in the outputs folder.
         seconds: Remaining time at the last recorded pace, in s; None if no pace is recorded.
         damage: Messages on damaged files, one for each file.
+        machines: Number of stored runs of each machine.
     """
 
     done: int
@@ -83,6 +86,7 @@ class Status:
     at_work: bool
     seconds: float | None
     damage: Sequence[str]
+    machines: Mapping[Machine, int]
 
 
 def find_status(sweep: Sweep) -> Status:
@@ -107,6 +111,7 @@ def find_status(sweep: Sweep) -> Status:
         at_work=is_at_work(sweep.outputs),
         seconds=None if pace is None else pace * left,
         damage=finished.damage,
+        machines=Counter(end.machine for end in stored),
     )
 
 

@@ -11,6 +11,7 @@ from runner.audit.sources import Where
 from runner.audit.verdict import SAMPLES, VERDICTS, CheckedEquation
 from runner.base import progress
 from runner.base.data_file import line_of
+from runner.base.machine import this_machine
 from runner.base.quantities import quantity
 from runner.reporting.audit.forms import RightElements, forms_of
 from runner.reporting.document import (
@@ -214,7 +215,7 @@ def _provenance() -> Provenance:
         (
             ("commit", provenance.commit() or "none (installed package)"),
             ("configurations", f"{SAMPLES}, seed 0"),
-            ("machine", provenance.machine()),
+            ("machine", this_machine().text),
             *provenance.versions().items(),
         )
     )

@@ -1,12 +1,15 @@
 """`runner compare` of stored runs: what differs, in pairs or not, and what is refused."""
 
 import json
+import shutil
+from dataclasses import replace
 
 import pytest
 from fixtures.stored import SHORT
 from support.engines import ASKED
 
 import runner
+from runner.base.machine import this_machine
 from runner.store.seal import write_job
 
 
@@ -78,6 +81,19 @@ def test_provenance_and_robots_that_differ(cli, copy_run):
     assert cells(out, "commit")[-1] == "abc"
     assert cells(out, "versions.pin")[-1] == "9.9"
     assert cells(out, "plant_step") == ["0.001", "0.0005"]
+
+
+def test_equal_runs_of_two_machines_differ_in_the_machine_alone(cli, copy_run, tmp_path):
+    a = copy_run("goal")
+    b = shutil.copytree(a, tmp_path / "elsewhere" / "runs" / a.name)
+    for run, core in ((a, "Haswell"), (b, "SkylakeX")):
+        machine = replace(this_machine(), openblas=core).record()
+        change(run, lambda record, machine=machine: record["provenance"].update(machine=machine))
+    out = cli("compare", a, b).out
+    told = "A and B differ only in the machine: OpenBLAS Haswell against OpenBLAS SkylakeX."
+    assert f"\n{told} What follows may be rounding, which can grow.\nsame config\n" in out
+    assert cells(out, "machine.openblas") == ["Haswell", "SkylakeX"]
+    assert "differ in no value" not in out
 
 
 def test_a_failed_run_says_why(cli, copy_run):

@@ -11,7 +11,7 @@ from support.caveat_runs import signals, stacked
 from support.engines import ASKED
 
 from runner.config.judgement import THRESHOLDS, CaveatsConfig
-from runner.metrics.caveats import plant_error
+from runner.metrics.caveats import plant_error, rounding
 from runner.metrics.caveats.monitor import Watch, look_together
 from runner.metrics.caveats.setting import Signals, setting_of, signals_of
 from runner.metrics.caveats.setting_rules import SETTING_RULES
@@ -23,7 +23,7 @@ ROBOTS = ("macro", "mini", "combined", "macro_mini_mini", "xarm7", "xarm7_mini",
 
 
 def test_every_rule_has_a_threshold_of_its_own():
-    rules = [rule.name for rule in (*TRACE_RULES, *SETTING_RULES)] + [plant_error.NAME]
+    rules = [rule.name for rule in (*TRACE_RULES, *SETTING_RULES)] + [plant_error.NAME, rounding.NAME]
     keys = {name: tuple(values) for name, values in our_thresholds().items()}
     assert keys == {name: (key,) for name, (key, *_) in THRESHOLDS.items()}
     assert sorted(CaveatsConfig.model_fields) == sorted(rules)

@@ -9,9 +9,9 @@ from runner.store import physics, syntax
 OTHERS = {
     "__init__.py", "__main__.py", "analysis", "api", "audit", "base/arrays.py", "base/bounded_yaml.py", "base/cache.py",
     "base/data_file.py", "base/dotted_keys.py", "base/engine_output.py", "base/engines.py", "base/errors.py",
-    "base/expressions", "base/former_names.py", "base/lazy_modules.py", "base/limits.py", "base/paths.py",
-    "base/progress.py", "base/quantities.py", "base/sanitize.py", "base/ticks.py", "cli", "config/compose",
-    "config/composed.py", "config/json_schema.py", "config/judgement.py", "config/limits.py",
+    "base/expressions", "base/former_names.py", "base/lazy_modules.py", "base/limits.py", "base/machine.py",
+    "base/paths.py", "base/progress.py", "base/quantities.py", "base/sanitize.py", "base/ticks.py", "cli",
+    "config/compose", "config/composed.py", "config/json_schema.py", "config/judgement.py", "config/limits.py",
     "controllers/stability.py", "doctor",
     "metrics/caveats",
     "plants/servo_contact_stability.py", "plugins/discovery.py", "plugins/folder_code.py", "recordings", "reporting",
@@ -19,6 +19,7 @@ OTHERS = {
     "studies", "study", "sweeps/batch.py", "sweeps/check.py", "sweeps/closed_nodes.py", "sweeps/deadline.py",
     "sweeps/differing.py", "sweeps/engine.py", "sweeps/estimate.py", "sweeps/finer_step.py", "sweeps/gathering.py",
     "sweeps/job.py", "sweeps/measurements.py", "sweeps/outcomes.py", "sweeps/plan.py", "sweeps/queue.py",
+    "sweeps/rerun.py", "sweeps/rounding.py",
     "sweeps/run.py", "sweeps/status.py", "sweeps/swept.py", "sweeps/table.py", "sweeps/template.py", "sweeps/tuning",
     "sweeps/work.py", "sweeps/writer.py", "symbolic/cache.py",
 }  # fmt: skip
