@@ -78,6 +78,7 @@ SHARED = {
     "simulation/run": "physics/simulation/test_blocks.py",
     "simulation/tick_time": "contract/sweeps/test_estimates_of_sweeps.py",
     "simulation/sensors": "physics/simulation/test_endpoint_sensing.py",
+    "store/cells": "contract/cli/test_check_sweep.py",
     "store/calibration": "contract/calibration/test_calibration_job.py",
     "store/finished": "contract/sweeps/test_outcomes.py",
     "store/physics": "unit/store/test_physics_modules.py",
