@@ -98,7 +98,8 @@ class JointFriction:
     def _secant(self, v: FloatArray) -> FloatArray:
         """Return sigma(v) / v, shape (n,), in N m s/rad."""
         up, y = v >= 0.0, self.sigmoid[1] * np.abs(v)
-        slope, odds = np.where(up, *self.slopes), np.where(up, *self.odds)
+        slope = np.where(up, self.slopes[0], self.slopes[1])
+        odds = np.where(up, self.odds[0], self.odds[1])
         share = np.where(y > 0.0, -portable.expm1(-y) / np.where(y > 0.0, y, 1.0), 1.0)
         found: FloatArray = slope * share / (1.0 + odds * portable.exp(-y))
         return found

@@ -55,7 +55,7 @@ class SampledCurve:
         controls, scale, orders = self._controls[place], np.ones_like(step), []
         for degree in range(_DEGREE, _DEGREE - 3, -1):
             rising, falling = _powers(share, degree), _powers(1.0 - share, degree)
-            weights = [comb(degree, k) for k in range(degree + 1)] * rising * falling[:, ::-1]
+            weights = np.array([comb(degree, k) for k in range(degree + 1)]) * rising * falling[:, ::-1]
             orders.append(scale * (weights[:, :, None] * controls).sum(axis=1))
             controls, scale = np.diff(controls, axis=1), scale * degree / step
         return np.stack(orders, axis=1)
@@ -63,7 +63,7 @@ class SampledCurve:
 
 def _powers(base: FloatArray, degree: int) -> FloatArray:
     """Return the powers 0 to a degree of a column, as products, shapes (T, 1) to (T, degree + 1)."""
-    return np.cumprod(np.hstack([np.ones_like(base), *[base] * degree]), axis=1)
+    return np.asarray(np.cumprod(np.hstack([np.ones_like(base), *[base] * degree]), axis=1), dtype=np.float64)
 
 
 def _configuration(value: Any) -> float | list[float]:

@@ -70,7 +70,7 @@ def zero_vibration(kind: ShaperKind, frequency: float, damping_ratio: float) -> 
     once = Impulses(np.array([0.0, half]), np.array([1.0, k]) / (1.0 + k))
     if kind == "zv":
         return once
-    return Impulses(half * np.arange(3), np.array([1.0, 2.0 * k, k**2]) / (1.0 + k) ** 2)
+    return Impulses(half * np.arange(3.0), np.array([1.0, 2.0 * k, k**2]) / (1.0 + k) ** 2)
 
 
 def in_turn(sequences: Sequence[Impulses]) -> Impulses:
