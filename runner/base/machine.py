@@ -99,8 +99,8 @@ def describe_mixture(counts: Mapping[Machine, int]) -> str:
     groups: Counter[str] = Counter()
     for machine, count in counts.items():
         groups[machine.in_words(names) or "an unknown machine"] += count
-    told = "; ".join(f"{count} run{'s' if count > 1 else ''} on {text}" for text, count in groups.most_common())
-    return f"made on {len(groups)} machines, which may round differently: {told}"
+    counted = "; ".join(f"{count} run{'s' if count > 1 else ''} on {text}" for text, count in groups.most_common())
+    return f"made on {len(groups)} machines, which may round differently: {counted}"
 
 
 def equal_up_to_rounding(a: float | None, b: float | None) -> bool:
@@ -109,14 +109,14 @@ def equal_up_to_rounding(a: float | None, b: float | None) -> bool:
 
 
 def _processor() -> tuple[str, str]:
-    """Return the model name of the processor and its level of x86-64, as Linux tells them; empty if it does not."""
+    """Return the model name of the processor and its level of x86-64, as Linux states them; empty elsewhere."""
     try:
         lines = Path("/proc/cpuinfo").read_text().splitlines()
     except OSError:
         return "", ""
     pairs = [(name.strip(), value.strip()) for name, _, value in (line.partition(":") for line in reversed(lines))]
-    told = dict(pairs)  # of the first processor
-    return told.get("model name", ""), _level(told.get("flags", "").split())
+    values = dict(pairs)  # of the first processor
+    return values.get("model name", ""), _level(values.get("flags", "").split())
 
 
 def _level(flags: Iterable[str]) -> str:

@@ -27,7 +27,7 @@ from runner.store.atomic import write_atomically
 
 SCHEMA = 2
 FORMER = 1
-"""Schema of files whose cells hold metrics alone."""
+"""Schema of files whose cells hold only metrics."""
 
 SENSITIVE, ROUNDED, BROKEN = "sensitive to rounding", "rounding or a library", "not reproducible here"
 """Reasons why a metric moved although its run has the name that it had in the baseline."""

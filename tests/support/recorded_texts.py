@@ -26,7 +26,7 @@ _HREF = "{http://www.w3.org/1999/xlink}href"
 _HEAD = "=== "
 _HASH = re.compile(r"\b(?:[0-9a-f]{24}|(?=\d*[a-f])[0-9a-f]{8})\b")
 _OF_TODAY = ("date", "commit")
-_PRINTED = re.compile(r"(?:less than )?(-?\d+(?:\.\d+)?)·10([⁻⁰¹²³⁴⁵⁶⁷⁸⁹]+)")
+_PRINTED = re.compile(r"(less than )?(-?\d+(?:\.\d+)?)·10([⁻⁰¹²³⁴⁵⁶⁷⁸⁹]+)")
 
 
 def read(file: Path) -> dict[str, list[str]]:
@@ -132,8 +132,9 @@ def _digits(value: float) -> str:
 
 
 def _printed(number: re.Match[str]) -> str:
-    size = float(f"{number[1]}e{number[2].translate(_POWERS)}")
-    return "0" if abs(size) <= _ZERO else number[0]
+    less, digits, power = number.groups()
+    bound = digits == "1" and not less  # a condition's, such as 1·10⁻⁹
+    return "0" if not bound and abs(float(f"{digits}e{power.translate(_POWERS)}")) <= _ZERO else number[0]
 
 
 def _agree(was: str, now: str) -> bool:

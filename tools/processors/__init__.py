@@ -1,8 +1,8 @@
 """Bits of runs under the kernels of other processors, each emulated in another process on this machine.
 
 `python -m tools processors` makes the table of `runs.py` on this processor and under each kernel of `kernels.py`. It
-prints each run whose bits differ from those on this processor. Judged are runs of PyBullet and Runge-Kutta between
-AVX-512 and AVX2, but for the causes in `comparison.CAUSES`.
+prints each run whose bits differ from those on this processor, and how far rounding grows in it. Two things are judged:
+PyBullet's and Runge-Kutta's bits between AVX-512 and AVX2, but for `comparison.CAUSES`, and the caveat `rounding_grows`.
 """
 
 

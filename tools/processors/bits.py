@@ -1,7 +1,7 @@
 """`python -m tools.processors.bits < RUNS`: make runs in this process, and print what they give, with all bits.
 
 RUNS is a JSON object of lists of overrides by name. The output has for each run its metrics by name, over the
-repetitions, the digest of its trace, its failure and the rules of its caveats.
+repetitions, the digest of its trace, and its failure.
 """
 
 import hashlib
@@ -20,7 +20,7 @@ quiet_environment()
 
 from runner.config.compose.compose import compose  # noqa: E402 - after the environment
 from runner.config.validation import validate  # noqa: E402
-from runner.simulation.run import simulate_run  # noqa: E402
+from runner.simulation.run import measure_rounding, simulate_run  # noqa: E402
 from tools.processors.kernels import environment, use_llvm_cpu  # noqa: E402
 
 Bits = Mapping[str, Mapping[str, Any]]
@@ -45,6 +45,12 @@ def make_under(kernel: str | None, runs: Mapping[str, Sequence[str]]) -> Bits:
     )
     found: Bits = json.loads(made.stdout)
     return found
+
+
+def growth(overrides: Sequence[str]) -> list[float]:
+    """Return the largest relative change of a metric from a moved start, for two draws of its signs."""
+    config = validate(compose(list(overrides)))
+    return [measure_rounding(config, draw=draw).largest for draw in range(2)]
 
 
 def _bits(overrides: Sequence[str]) -> dict[str, Any]:

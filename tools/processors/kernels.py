@@ -53,7 +53,7 @@ def environment(name: str) -> dict[str, str]:
 
 
 def not_emulated(name: str) -> list[str]:
-    """Return what this machine cannot emulate of a kernel; empty if it can emulate all of it."""
+    """Return the parts of a kernel that this machine cannot emulate."""
     if platform.machine() != "x86_64":
         return [f"{name}: this machine is {platform.machine()}, not x86_64"]
     missing = []

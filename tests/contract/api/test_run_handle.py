@@ -157,9 +157,9 @@ OTHERS = [{"machine": Machine("Alpha", "Linux").record()}, {"machine": "Alpha, L
 @pytest.mark.parametrize("provenance", OTHERS, ids=str)
 def test_a_run_of_another_machine_is_accepted_up_to_rounding(run, provenance):
     other = rounded(run, 1e-9, **provenance)
-    with pytest.warns(RuntimeWarning, match="in the last digits of 1 metrics: its machine or library") as told:
+    with pytest.warns(RuntimeWarning, match="in the last digits of 1 metrics: its machine or library") as warned:
         assert other.trace(1).equals(run.trace(1))
-    assert told[0].filename == __file__
+    assert warned[0].filename == __file__
     with pytest.raises(runner.RunnerError, match="another machine or library version rounds in another way"):
         rounded(run, 1e-5, **provenance).trace(1)
 

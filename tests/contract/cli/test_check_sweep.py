@@ -143,7 +143,7 @@ OTHER_CORE = {"machine": {"openblas": "Prescott"}}
 
 
 @pytest.mark.parametrize(
-    ("change_content", "code", "told"),
+    ("change_content", "code", "expected"),
     [
         (move(1e-9), 1, "not reproducible here"),
         (move(1e-9, **OTHER_CORE), 0, "2 cells: the baseline is of another machine"),
@@ -161,19 +161,19 @@ OTHER_CORE = {"machine": {"openblas": "Prescott"}}
         ),
     ],
 )
-def test_a_run_of_the_same_name_moves_by_rounding_a_library_or_not_at_all(cli, learned, change_content, code, told):
+def test_a_run_of_the_same_name_moves_by_rounding_a_library_or_not_at_all(cli, learned, change_content, code, expected):
     folder, path = learned
     edit(path, change_content)
     ending = cli("check", folder, "--baseline", path)
     assert (ending.code, ending.err) == (code, "")
-    assert told in ending.out
+    assert expected in ending.out
 
 
 def test_both_machines_are_named_where_rounding_moves_a_metric(cli, learned):
     folder, path = learned
     edit(path, move(1e-3, **OTHER_CORE))
-    told = cli("check", folder, "--baseline", path, "--format", "markdown").out.splitlines()[-1]
-    assert told == (
+    expected = cli("check", folder, "--baseline", path, "--format", "markdown").out.splitlines()[-1]
+    assert expected == (
         "2 cells: the baseline is of another machine, which may round differently: OpenBLAS Prescott against OpenBLAS "
         f"{this_machine().openblas} here"
     )
@@ -194,7 +194,7 @@ def former(content):
 
 
 @pytest.mark.parametrize(
-    ("change_content", "told"),
+    ("change_content", "expected"),
     [
         (former, "2 cells: the baseline names no run, so rounding is not distinguished"),
         (without("run"), "2 cells: the baseline names no run, so rounding is not distinguished"),
@@ -203,14 +203,14 @@ def former(content):
         (without("versions", "v9"), "2 cells: the baseline or the run does not name machine and versions"),
     ],
 )
-def test_a_baseline_that_does_not_name_what_made_it_is_checked_and_says_so(cli, learned, change_content, told):
+def test_a_baseline_that_does_not_name_what_made_it_is_checked_and_says_so(cli, learned, change_content, expected):
     folder, path = learned
     edit(path, change_content)
     ending = cli("check", folder, "--baseline", path)
     assert (ending.code, ending.err) == (0, "")
     first, sentence = ending.out.splitlines()
     assert first.startswith("good: ")
-    assert sentence.startswith(told)
+    assert sentence.startswith(expected)
 
 
 @pytest.mark.parametrize(

@@ -90,8 +90,8 @@ def test_equal_runs_of_two_machines_differ_in_the_machine_alone(cli, copy_run, t
         machine = replace(this_machine(), openblas=core).record()
         change(run, lambda record, machine=machine: record["provenance"].update(machine=machine))
     out = cli("compare", a, b).out
-    told = "A and B differ only in the machine: OpenBLAS Haswell against OpenBLAS SkylakeX."
-    assert f"\n{told} What follows may be rounding, which can grow.\nsame config\n" in out
+    expected = "A and B differ only in the machine: OpenBLAS Haswell against OpenBLAS SkylakeX."
+    assert f"\n{expected} What follows may be rounding, which can grow.\nsame config\n" in out
     assert cells(out, "machine.openblas") == ["Haswell", "SkylakeX"]
     assert "differ in no value" not in out
 
@@ -125,10 +125,10 @@ def test_what_is_compared_is_told_before_any_number(cli, copy_run):
     a = copy_run("goal")
     b, one = (cli(*SHORT, *other, "gravity=9.7").folder for other in (("controller.period=0.005",), ()))
     assert "\nA and B differ only in gravity: 9.81 against 9.7.\n" in cli("compare", a, one).out
-    told = next(line for line in cli("compare", a, b).out.splitlines() if line.startswith("A and B differ"))
-    assert "gravity (9.81 against 9.7), and also in " in told
-    assert "controller.period" in told
-    assert told.endswith("may be due to any of these.")
+    expected = next(line for line in cli("compare", a, b).out.splitlines() if line.startswith("A and B differ"))
+    assert "gravity (9.81 against 9.7), and also in " in expected
+    assert "controller.period" in expected
+    assert expected.endswith("may be due to any of these.")
     assert "\nA and B differ in no value.\nsame config\n" in cli("compare", a, a).out
 
 

@@ -62,8 +62,8 @@ def test_a_sweep_that_went_on_on_another_machine_names_both(cli, monkeypatch, tr
         assert "machines" not in cli(*words, "seed=0,1").err
     ended = cli(*words, "seed=0,1,2")
     cores = f"2 runs on OpenBLAS Prescott; 1 run on OpenBLAS {here.openblas}"
-    told = f"made on 2 machines, which may round differently: {cores}"
-    assert f"runner: {told}\n" in ended.err
-    assert told in cli("status", ended.folder).out.splitlines()
+    expected = f"made on 2 machines, which may round differently: {cores}"
+    assert f"runner: {expected}\n" in ended.err
+    assert expected in cli("status", ended.folder).out.splitlines()
     page = (cli("report", ended.folder, "--format", "html").folder / "report.html").read_text()
     assert f"<dd>{here.text}; {other.text}</dd>" in page or f"<dd>{other.text}; {here.text}</dd>" in page

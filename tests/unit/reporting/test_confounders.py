@@ -98,13 +98,13 @@ BETA = replace(ALPHA, level="x86-64-v3", openblas="Haswell")
 
 def test_the_machine_is_named_where_nothing_else_differs():
     a, b = made_by("A", ALPHA), made_by("B", BETA)
-    told = "x86-64-v4, OpenBLAS SkylakeX against x86-64-v3, OpenBLAS Haswell"
+    expected = "x86-64-v4, OpenBLAS SkylakeX against x86-64-v3, OpenBLAS Haswell"
     assert found(a, b).in_words("A", "B") == (
-        f"A and B differ only in the machine: {told}. What follows may be rounding, which can grow."
+        f"A and B differ only in the machine: {expected}. What follows may be rounding, which can grow."
     )
     newer = made_by("B", BETA, commit=["def"])
     assert found(a, newer).in_words("A", "B") == (
-        f"A and B differ in no value, but in the machine ({told}) and in commit."
+        f"A and B differ in no value, but in the machine ({expected}) and in commit."
     )
     assert found(a, a).in_words("A", "B") == "A and B differ in no value."
 
