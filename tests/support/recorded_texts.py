@@ -19,7 +19,7 @@ import numpy as np
 from runner.reporting.document import Provenance
 
 _NUMBER = re.compile(r"(?<![\w.])-?\d+(?:\.\d+)?(?:e[+-]?\d+)?")
-_DIGITS = re.compile(r"(?<![\w#.-])(?:-?\d+(?:\.\d+)?(?:e[+-]?\d+|·10[⁻⁰¹²³⁴⁵⁶⁷⁸⁹]+)?|-?inf|nan|None)(?![\w.])")
+_DIGITS = re.compile(r"(?<![\w#.-])(?:-?\d+(?:\.\d+)?(?:e[+-]?\d+|·10[⁻⁰¹²³⁴⁵⁶⁷⁸⁹]+)?|-?inf|nan|None)(?!\w|\.\d)")
 _POWERS = str.maketrans("⁻⁰¹²³⁴⁵⁶⁷⁸⁹", "-0123456789")
 _SAME, _ZERO = 0.011, 1e-8  # so that a count is the same, and what rounding leaves
 _HREF = "{http://www.w3.org/1999/xlink}href"

@@ -2,7 +2,7 @@
 
 `python -m tools processors` makes the table of `runs.py` on this processor and under each kernel of `kernels.py`. It
 prints each run whose bits differ from those on this processor, and how far rounding grows in it. Two things are judged:
-PyBullet's and Runge-Kutta's bits between AVX-512 and AVX2, but for `comparison.CAUSES`, and the caveat `rounding_grows`.
+bits on PyBullet and Runge-Kutta between AVX-512 and AVX2, but for `comparison.CAUSES`, and the caveat `rounding_grows`.
 """
 
 
