@@ -2,6 +2,7 @@
 
 from collections.abc import Callable, Sequence
 from dataclasses import fields
+from typing import Any
 
 import numpy as np
 
@@ -31,12 +32,11 @@ from runner.config.timing import Steps, Timing, count_steps, count_ticks
 from runner.config.torque_limits import TorqueLimitsConfig
 from runner.controllers import CONTROLLERS, ControllerConfig, Loop
 from runner.plants import PLANTS, PlantConfig, options_of
-from runner.plugins.registry import KindConfig
+from runner.plugins.registry import KindConfig, Registry
 from runner.robots.mismatch import MismatchConfig, check_links
 from runner.robots.robot import Robot, end_points
-from runner.sensing.encoders import NoiseConfig
+from runner.sensing import JOINT_TORQUE_SENSORS, NOISES, features_of
 from runner.sensing.force_torque import ForceTorqueConfig
-from runner.sensing.joint_torque import JointTorqueConfig
 from runner.trajectories import TRAJECTORIES, HasStart, Trajectory
 from runner.trajectories.joint_motion import TipOfJoints
 
@@ -61,8 +61,8 @@ def validate(composed: Composed) -> RunConfig:
     plant, controller = groups.get("plant"), groups.get("controller")
     problems.recall(_check_payload, robot, groups.get("mismatch"))
     outline = problems.recall(read_outline, robot, composed.config_dirs)
-    noise = problems.recall(_by_joint, groups.get("noise"), outline)
-    torque_sensor = problems.recall(_by_joint, groups.get("joint_torque_sensor"), outline)
+    noise = problems.recall(_by_joint, NOISES, groups.get("noise"), outline)
+    torque_sensor = problems.recall(_by_joint, JOINT_TORQUE_SENSORS, groups.get("joint_torque_sensor"), outline)
     torque_limits = problems.recall(TorqueLimitsConfig.by_joint, groups.get("torque_limits"), outline)
     problems.recall(_check_commands, plant, controller)
     steps = problems.recall(count_steps, outline, plant, controller)
@@ -93,8 +93,8 @@ def _build(groups: Parts, arm: Robot, steps: Steps, problems: Problems) -> Parts
         ConfigError: with every problem found.
     """
     plant, controller, trajectory = groups["plant"], groups["controller"], groups["trajectory"]
-    build_loops = problems.recall if CONTROLLERS.is_ours(controller.kind) else problems.attempt
-    build_path = problems.recall if TRAJECTORIES.is_ours(trajectory.kind) else problems.attempt
+    build_loops = problems.attempt if CONTROLLERS.is_user_supplied(controller.kind) else problems.recall
+    build_path = problems.attempt if TRAJECTORIES.is_user_supplied(trajectory.kind) else problems.recall
     ignore_base_rotation = problems.recall(_ignores_base_rotation, arm, plant)
     path = build_path(_build_path, arm, trajectory, ignore_base_rotation)
     loops = build_loops(CONTROLLERS.build_for, controller, arm, isinstance(path, TipOfJoints))
@@ -134,13 +134,14 @@ _CHECKS: Sequence[Callable[[RunConfig], object]] = (
 )  # fmt: skip
 
 
-def _by_joint(sensor: KindConfig, outline: RobotOutline) -> KindConfig | None:
-    """Return the errors of each joint's sensor, None without sensors; the config itself for user-supplied sensors.
+def _by_joint(kinds: Registry[KindConfig, ..., Any], sensor: KindConfig, outline: RobotOutline) -> KindConfig | None:
+    """Return the values of each joint's sensor, None without sensors; see SensorFeatures.
 
     Raises:
         ConfigError: for values that do not fit the robot.
     """
-    return sensor.by_joint(outline.joint_units) if isinstance(sensor, NoiseConfig | JointTorqueConfig) else sensor
+    found: KindConfig | None = kinds.ask(sensor, features_of(kinds, sensor.kind).by_joint, outline.joint_units)
+    return found
 
 
 def _check_payload(robot: RobotConfig, mismatch: KindConfig) -> None:

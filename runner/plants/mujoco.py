@@ -14,6 +14,7 @@ from runner.base.lazy_modules import pin
 from runner.plants.decoupled import TorquePlantConfig, assemble_flexible, assemble_plant
 from runner.plants.decoupled import default_step as default_step
 from runner.plants.flexible_config import FlexibleJointsConfig
+from runner.plants.flexible_config import modes as modes
 from runner.plants.plant import Plant
 from runner.robots.model import RobotModel
 from runner.robots.mounting import TOOL_MOUNT

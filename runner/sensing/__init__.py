@@ -1,13 +1,16 @@
 """Sensors: encoders, joint torques, wrist force/torque and tip position."""
 
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass
 from typing import Any, Protocol
 
 import numpy as np
 
 from runner.base.arrays import FloatArray
 from runner.base.errors import SimulationError
+from runner.plugins.features import Features, read_features
 from runner.plugins.guard import Asked, Guard, Method, checked, like, place
-from runner.plugins.registry import KindConfig, Registry
+from runner.plugins.registry import KindConfig, Kinds, Registry
 
 
 class Encoders(Protocol):
@@ -47,6 +50,24 @@ def _check_measurement(
         at = place(asked.part.measure)
         raise SimulationError(f"{at} gave {answer!r:.200}; it must be positions and velocities")
     return checked(answer[0], q.shape, asked), checked(answer[1], dq.shape, asked)
+
+
+@dataclass(frozen=True)
+class SensorFeatures(Features):
+    """Optional members of the module of a sensor in the joints.
+
+    Attributes:
+        by_joint: Function of the config and of the unit of each joint by name, by stage. It returns the values of each
+            joint, with the kind, from which `build` makes the sensors, or None for no sensors. The default returns the
+            config.
+    """
+
+    by_joint: Callable[[Any, Mapping[str, Mapping[str, str]]], Any] = lambda config, units: config
+
+
+def features_of(kinds: Kinds, kind: str) -> SensorFeatures:
+    """Return the optional members of the module of a kind of sensors."""
+    return read_features(SensorFeatures, kinds.module(kind))
 
 
 NOISES = Registry[KindConfig, [tuple[str, ...], int, float, np.random.Generator], Encoders](

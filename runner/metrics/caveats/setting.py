@@ -43,8 +43,8 @@ class Setting:
         ticks_per_torque: Number of ticks for which the torque of each joint is constant, shape (nq,).
         tracked: True if the tip must follow a path, instead of only reaching a goal.
         complies: True if the controller must comply with the external wrench.
-        noise: Noise of the joint measurement.
-        mismatch: Error of the nominal model of the controllers.
+        noise: Noise of the joint measurement; None for encoders of another kind.
+        mismatch: Factors on the nominal model of the controllers; None for a mismatch of another kind.
         mass: Mass of all moving links, in kg.
         in_place_of: Kind of the default plant if this plant replaces it because it is missing; otherwise None.
         contact: Contact of a servo-driven arm with a wall under an admittance law; None without one.
@@ -67,8 +67,8 @@ class Setting:
     ticks_per_torque: NDArray[np.intp]
     tracked: bool
     complies: bool
-    noise: "EncoderNoise"
-    mismatch: "MismatchConfig"
+    noise: "EncoderNoise | None"
+    mismatch: "MismatchConfig | None"
     mass: float
     in_place_of: str | None
     contact: "ServoContact | None"
