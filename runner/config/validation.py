@@ -20,6 +20,7 @@ from runner.config.cross_checks import (
     count_late,
     endpoint_ticks,
 )
+from runner.config.dependent_keys import check_dependent_keys
 from runner.config.desired_motion import check_path, check_points, check_repeats, start_posture
 from runner.config.flexibility import check_flexible_joints, check_flexible_links
 from runner.config.groups import read_groups
@@ -129,8 +130,8 @@ def _shape(groups: Parts, arm: Robot, path: Trajectory, loops: tuple[Loop, ...])
 _PARTS = {field.name for field in fields(RunConfig)}
 # Checks of the whole config.
 _CHECKS: Sequence[Callable[[RunConfig], object]] = (
-    check_schedule, check_computation, check_observer, check_notch, check_flexible_joints, check_flexible_links,
-    check_reading, endpoint_ticks, check_repeats,
+    check_dependent_keys, check_schedule, check_computation, check_observer, check_notch, check_flexible_joints,
+    check_flexible_links, check_reading, endpoint_ticks, check_repeats,
 )  # fmt: skip
 
 
