@@ -70,7 +70,7 @@ def test_a_run_on_rk4_passes_a_limit_and_says_so(make_run):
 
 def test_a_joint_beyond_its_speed_limit_has_a_caveat_on_a_plant_of_torques(make_run):
     """12 rad/s at a limit of 0.5 rad/s passed without a word."""
-    fast = ("robot=macro", "trajectory=quintic", "trajectory.duration=0.3", "plant=rk4", "duration=0.3")
+    fast = ("robot=macro", "trajectory=quintic", "trajectory.duration=1", "plant=rk4", "duration=1")
     limits = "robot.velocity_limits={q1: 0.5, q2: 0.5, q3: 0.5}"
     run, free = make_run(*fast, limits), make_run(*fast)
     peaks = [run.metrics[f"peak_joint_speed_q{joint}"].median for joint in (1, 2, 3)]
