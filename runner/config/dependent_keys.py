@@ -7,6 +7,8 @@ from collections.abc import Callable, Iterable, Mapping, Sequence
 from functools import lru_cache
 from typing import Any, NamedTuple
 
+import numpy as np
+
 from runner.base.dotted_keys import get
 from runner.base.errors import ConfigError
 from runner.base.sanitize import quoted
@@ -14,13 +16,16 @@ from runner.config.compose.compose import given_keys, references_in
 from runner.config.run import RunConfig
 from runner.config.settings import COMPARED
 from runner.controllers.force.hybrid_force import HybridForceConfig
+from runner.controllers.force.impedance import ImpedanceConfig
 from runner.environments.push import PushConfig
 from runner.environments.wall import WallConfig
 from runner.plants import PLANTS
 from runner.plants.decoupled import TorquePlantConfig
 from runner.plants.friction_law import joint_friction
+from runner.robots.mismatch import MISMATCHES
 from runner.sensing.force_torque import ForceTorqueConfig
 from runner.sensing.velocity import Velocity, gains
+from runner.trajectories.joint_motion import TipOfJoints
 
 _FRICTION = "robot.friction"
 _PLAIN = {"wrist_sensor": "ideal"}  # option of a group that sets nothing; of other groups none
@@ -98,12 +103,11 @@ def _rules_of(key: str) -> Sequence[_Rule]:
 
 def _is_special(config: RunConfig, group: str) -> bool:
     """Return True if all that a chosen option of a group sets may be without effect, and the option sets something."""
-    sensor, error = config.wrist_sensor, config.model_error
-    acts = {
-        "wrist_sensor": isinstance(sensor, ForceTorqueConfig) and sensor.mass > 0.0,
-        "mismatch": error is not None and error.length != 1.0,
-    }
-    return config.composed.choices[group] != _PLAIN.get(group, "none") and not acts.get(group, False)
+    if config.composed.choices[group] == _PLAIN.get(group, "none"):
+        return False
+    if group == "wrist_sensor":  # its mass loads the arm
+        return not (isinstance(config.wrist_sensor, ForceTorqueConfig) and config.wrist_sensor.mass > 0.0)
+    return group != "mismatch" or _keeps_lengths(config)
 
 
 def _is_in(key: str, groups: Iterable[str]) -> bool:
@@ -124,8 +128,15 @@ def _lacks_friction(config: RunConfig) -> bool:
 
 
 def _moves_ideally(config: RunConfig) -> str | None:
-    ideal = config.model_error is not None and PLANTS.commands(config.plant.kind) == "position"
+    ideal = PLANTS.commands(config.plant.kind) == "position"
     return f"plant={config.plant.kind} moves the joints ideally, whatever their mass" if ideal else None
+
+
+def _keeps_lengths(config: RunConfig) -> bool:
+    """Return True if the nominal model has the kinematics of the robot."""
+    home = config.arm.home
+    nominal = MISMATCHES.build(config.mismatch, config.arm, np.random.default_rng(0))
+    return bool(np.array_equal(nominal.model.tip_jacobian(home), config.arm.model.tip_jacobian(home)))
 
 
 def _is_not_compared(config: RunConfig) -> str | None:
@@ -236,6 +247,30 @@ def _is_one_stage(config: RunConfig) -> str | None:
     return f"robot={config.robot.name} has one stage" if len(config.arm.stages) == 1 else None
 
 
+def _bears_nothing(config: RunConfig) -> str | None:
+    return None if config.robot.payload.largest else "robot.payload.mass is 0"
+
+
+def _has_one_stage_or_all_comply(config: RunConfig) -> str | None:
+    law = config.controller
+    if not isinstance(law, ImpedanceConfig):
+        return None
+    if len(config.arm.stages) > 1 and law.actuated_stages == "last_stage":
+        return None
+    return "controller.kind=impedance uses it in stages that do not comply, and has none"
+
+
+def _follows_joints(config: RunConfig) -> str | None:
+    joints = all(loop.follows_joints for loop in config.loops) and isinstance(config.path, TipOfJoints)
+    return f"trajectory.kind={config.composed.choices.get('trajectory')} is a motion of the joints" if joints else None
+
+
+def _is_not_redundant(config: RunConfig) -> str | None:
+    task = getattr(config.controller, "task", "position")
+    free = config.arm.model.nq - (6 if task == "pose" else 3)
+    return f"the {config.arm.model.nq} joints of robot={config.robot.name} are not redundant" if free <= 0 else None
+
+
 def _meets_no_wall(config: RunConfig) -> str | None:
     return None if type(config.environment) is WallConfig else "environment is no wall"
 
@@ -259,6 +294,11 @@ _RULES = (
     _Rule(["robot.friction.sigmoid", "plant.friction.sigmoid"], _has_no_sigmoid),
     _Rule(["plant.servo"], _has_no_servo),
     _Rule(["plant.dynamics", "plant.wrist_rotation"], _is_one_stage),
+    _Rule(["controller.actuated_stages"], _is_one_stage),
+    _Rule(["controller.natural_frequency", "controller.damping_ratio"], _has_one_stage_or_all_comply),
+    _Rule(["controller.null_space_frequency"], _is_not_redundant),
+    _Rule([f"controller.{name}" for name in ("task", "singularity_damping", "null_space_frequency")], _follows_joints),
+    _Rule(["robot.payload.position"], _bears_nothing),
     _Rule(["robot.tool.tip_radius"], _meets_no_wall),
 )
 _REFERRED = (

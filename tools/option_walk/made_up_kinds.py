@@ -1,4 +1,4 @@
-"""A further kind in each registry, as a built-in one that CONTRIBUTING describes: a module, a YAML file, a registry line.
+"""A further kind in each registry, made as CONTRIBUTING says: a module, a YAML file, a line of the registry.
 
 Each kind differs visibly from the default kind of its group. Some have a config derived from that of the default kind.
 """

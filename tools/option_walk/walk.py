@@ -25,7 +25,8 @@ from tools.option_walk.scenes import CHANGED, ENGINES, EXCEPTIONS, LEFT_OUT, SCE
 
 Verdict = Literal["acts", "told", "rejected", "excepted", "SILENT", "NOT IN THE HASH", "CRASHED"]
 FAULTS = ("SILENT", "NOT IN THE HASH", "CRASHED")
-_UNCLOCKED = ("tick_seconds",)
+_UNCLOCKED = ("tick_seconds", "law_seconds")
+_SLOW = 1e-4  # rad/s
 
 
 class Step(NamedTuple):
@@ -77,14 +78,14 @@ def steps_of(name: str, engine_name: str, folder: Path) -> list[Step]:
     """Return the changes of a scene on a plant; those of the plainest run if the plant rejects the scene's."""
     scene, base = SCENES[name], base_of(name, engine_name)
     try:
-        resolved = compose(base, [folder]).resolved
-        validate(compose(base, [folder]))
+        config = validate(compose(base, [folder]))
     except ConfigError:
         return []
-    found = [f"{option}" for option in scene.options]
-    for key, value, allowed in _leaves(resolved):
+    found = [option for option in scene.options if option not in base]
+    joint = config.arm.model.joint_names[0]
+    for key, value, allowed in _leaves(config.resolved):
         if _is_in(key, scene.feels) and not _is_in(key, [*scene.but, *LEFT_OUT]):
-            found += [f"++{key}={_typed(each)}" for each in _others(key, value, allowed)]
+            found += [f"++{key}={_typed(each)}" for each in _others(key, value, allowed, joint)]
     return [Step(name, engine_name, change) for change in found]
 
 
@@ -162,7 +163,9 @@ def _leaves(resolved: Mapping[str, Any]) -> Iterator[tuple[str, Any, Sequence[An
         yield from _of_model(group, content, model)
 
 
-def _of_model(place: str, content: Mapping[str, Any], model: type[StrictModel]) -> Iterator[tuple[str, Any, Sequence[Any]]]:
+def _of_model(
+    place: str, content: Mapping[str, Any], model: type[StrictModel]
+) -> Iterator[tuple[str, Any, Sequence[Any]]]:
     for name, value in content.items():
         field, key = model.model_fields.get(name), f"{place}.{name}"
         inner = nested_model(field.annotation) if field else None
@@ -185,8 +188,10 @@ def _words(annotation: Any) -> list[Any]:
     return [word for part in get_args(annotation) for word in _words(part)]
 
 
-def _others(key: str, value: Any, allowed: Sequence[Any]) -> list[Any]:
+def _others(key: str, value: Any, allowed: Sequence[Any], first_joint: str) -> list[Any]:
     """Return the values to which a key changes: other words, and a number or list that differs visibly."""
+    if key == "robot.velocity_limits":
+        return [{first_joint: _SLOW}]
     if key in CHANGED:
         return [CHANGED[key]] if CHANGED[key] != value else []
     if isinstance(value, str) and allowed:
@@ -197,7 +202,7 @@ def _others(key: str, value: Any, allowed: Sequence[Any]) -> list[Any]:
 
 @cache
 def _number(value: float) -> float:
-    return 1.37 * value if value else 0.01
+    return 1.1 * value if value else 0.01
 
 
 def _moved(value: Any) -> Any:
