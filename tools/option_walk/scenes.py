@@ -75,9 +75,9 @@ SCENES: Mapping[str, Scene] = {
         "robot=macro trajectory=quintic duration=0.06 controller=computed_torque",
         ["robot.friction.viscous", "robot.friction.coulomb"],
         [],
-        [*_OWN, "noise=thesis", "environment=push", "environment=hand_guiding", "environment=spring", "environment=sticky_wall",
-         "controller=soft_pd", "trajectory=swing", "plant=euler", "notch=torques", "disturbance_observer=momentum",
-         "torque_limits=thesis", *(f"controller={law}" for law in _LAWS),
+        [*_OWN, "noise=thesis", "environment=push", "environment=hand_guiding", "environment=spring",
+         "environment=sticky_wall", "controller=soft_pd", "trajectory=swing", "plant=euler", "notch=torques",
+         "disturbance_observer=momentum", "torque_limits=thesis", *(f"controller={law}" for law in _LAWS),
          *(f"trajectory={shape}" for shape in _SHAPES)],
     ),
     "ideal": Scene(
