@@ -140,7 +140,7 @@ def _simulate(words: Sequence[str], config_dirs: Sequence[Path], command: str) -
 
 def _idle_in_one_run(composed: "Composed") -> list[str]:
     """Return a line for each key of sweeps that the command line or an experiment sets for a single run."""
-    from runner.config.compose.compose import given_keys, swept_keys
+    from runner.config.compose.given_keys import given_keys, swept_keys
 
     found = [f"{key}: no effect, because one run is made; add -m" for key in given_keys(composed) if key in _OF_SWEEPS]
     if swept := swept_keys(composed):

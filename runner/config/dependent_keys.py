@@ -12,7 +12,7 @@ import numpy as np
 from runner.base.dotted_keys import get
 from runner.base.errors import ConfigError
 from runner.base.sanitize import quoted
-from runner.config.compose.compose import given_keys, references_in
+from runner.config.compose.given_keys import given_keys, references_in
 from runner.config.run import RunConfig
 from runner.config.settings import COMPARED
 from runner.controllers.force.hybrid_force import HybridForceConfig

@@ -2,7 +2,6 @@
 
 from collections.abc import Callable, Sequence
 from dataclasses import fields
-from typing import Any
 
 import numpy as np
 
@@ -33,10 +32,10 @@ from runner.config.timing import Steps, Timing, count_steps, count_ticks
 from runner.config.torque_limits import TorqueLimitsConfig
 from runner.controllers import CONTROLLERS, ControllerConfig, Loop
 from runner.plants import PLANTS, PlantConfig, options_of
-from runner.plugins.registry import KindConfig, Registry
+from runner.plugins.registry import KindConfig
 from runner.robots.mismatch import MismatchConfig, check_links
 from runner.robots.robot import Robot, end_points
-from runner.sensing import JOINT_TORQUE_SENSORS, NOISES, features_of
+from runner.sensing import values_by_joint
 from runner.sensing.force_torque import ForceTorqueConfig
 from runner.trajectories import TRAJECTORIES, HasStart, Trajectory
 from runner.trajectories.joint_motion import TipOfJoints
@@ -62,8 +61,8 @@ def validate(composed: Composed) -> RunConfig:
     plant, controller = groups.get("plant"), groups.get("controller")
     problems.recall(_check_payload, robot, groups.get("mismatch"))
     outline = problems.recall(read_outline, robot, composed.config_dirs)
-    noise = problems.recall(_by_joint, NOISES, groups.get("noise"), outline)
-    torque_sensor = problems.recall(_by_joint, JOINT_TORQUE_SENSORS, groups.get("joint_torque_sensor"), outline)
+    noise = problems.recall(_by_joint, "noise", groups.get("noise"), outline)
+    torque_sensor = problems.recall(_by_joint, "joint_torque_sensor", groups.get("joint_torque_sensor"), outline)
     torque_limits = problems.recall(TorqueLimitsConfig.by_joint, groups.get("torque_limits"), outline)
     problems.recall(_check_commands, plant, controller)
     steps = problems.recall(count_steps, outline, plant, controller)
@@ -135,14 +134,9 @@ _CHECKS: Sequence[Callable[[RunConfig], object]] = (
 )  # fmt: skip
 
 
-def _by_joint(kinds: Registry[KindConfig, ..., Any], sensor: KindConfig, outline: RobotOutline) -> KindConfig | None:
-    """Return the values of each joint's sensor, None without sensors; see SensorFeatures.
-
-    Raises:
-        ConfigError: for values that do not fit the robot.
-    """
-    found: KindConfig | None = kinds.ask(sensor, features_of(kinds, sensor.kind).by_joint, outline.joint_units)
-    return found
+def _by_joint(group: str, sensor: KindConfig, outline: RobotOutline) -> KindConfig | None:
+    """Return the values of each joint's sensor, None without sensors; see values_by_joint."""
+    return values_by_joint(group, sensor, outline.joint_units)
 
 
 def _check_payload(robot: RobotConfig, mismatch: KindConfig) -> None:

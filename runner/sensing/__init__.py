@@ -10,7 +10,7 @@ from runner.base.arrays import FloatArray
 from runner.base.errors import SimulationError
 from runner.plugins.features import Features, read_features
 from runner.plugins.guard import Asked, Guard, Method, checked, like, place
-from runner.plugins.registry import KindConfig, Kinds, Registry
+from runner.plugins.registry import KindConfig, Registry
 
 
 class Encoders(Protocol):
@@ -65,11 +65,6 @@ class SensorFeatures(Features):
     by_joint: Callable[[Any, Mapping[str, Mapping[str, str]]], Any] = lambda config, units: config
 
 
-def features_of(kinds: Kinds, kind: str) -> SensorFeatures:
-    """Return the optional members of the module of a kind of sensors."""
-    return read_features(SensorFeatures, kinds.module(kind))
-
-
 NOISES = Registry[KindConfig, [tuple[str, ...], int, float, np.random.Generator], Encoders](
     "noise",
     {"encoders": "runner.sensing.encoders"},
@@ -93,3 +88,20 @@ JOINT_TORQUE_SENSORS = Registry[KindConfig, [tuple[str, ...], int, np.random.Gen
     default="joint_torque",
 )
 """`build` takes the joint names, the number of readings, and a random generator."""
+
+
+def values_by_joint(group: str, sensor: KindConfig, units: Mapping[str, Mapping[str, str]]) -> KindConfig | None:
+    """Return the values of each joint's sensor, None without sensors; see SensorFeatures.
+
+    Args:
+        group: "noise" or "joint_torque_sensor".
+        sensor: Config of the sensors.
+        units: Unit of the position of each joint by name, rad or m, by stage.
+
+    Raises:
+        ConfigError: for values that do not fit the robot.
+    """
+    kinds: Registry[KindConfig, ..., Any] = NOISES if group == NOISES.group else JOINT_TORQUE_SENSORS
+    features: SensorFeatures = read_features(SensorFeatures, kinds.module(sensor.kind))
+    found: KindConfig | None = kinds.ask(sensor, features.by_joint, units)
+    return found

@@ -20,8 +20,8 @@ from runner import store
 from runner.base import progress
 from runner.base.errors import ConfigError, StoreError
 from runner.base.sanitize import one_line
-from runner.config.compose.compose import given_keys
 from runner.config.compose.composer import Composer
+from runner.config.compose.given_keys import given_keys
 from runner.config.composed import CALIBRATION
 from runner.config.dependent_keys import depends, idle_keys
 from runner.config.limits import SweepConfig, check_cpu_time, check_memory_together

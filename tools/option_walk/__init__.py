@@ -42,11 +42,11 @@ def main(arguments: Sequence[str] = ()) -> bool:
             steps = random.Random(given.seed).sample(steps, min(given.sample, len(steps)))  # noqa: S311 - no secret
             steps.sort()
         modes = [given.mode] if given.mode else ["compiled", "interpreted"]
-        faults = [fault for mode in modes for fault in walk(steps, folder, mode, given.verbose)]
+        faults = [fault for mode in modes for fault in judge_all(steps, folder, mode, given.verbose)]
     return not faults
 
 
-def walk(steps: list[Step], folder: Path, mode: str, verbose: bool = False) -> list[tuple[Step, Verdict, str]]:
+def judge_all(steps: list[Step], folder: Path, mode: str, verbose: bool = False) -> list[tuple[Step, Verdict, str]]:
     """Judge changes, print the table of a mode and each fault, and return the faults."""
     began, walker, counts, faults = time.monotonic(), Walk(folder), dict[str, Counter[str]](), []
     with interpreted() if mode == "interpreted" else nullcontext():

@@ -104,7 +104,13 @@ SCENES: Mapping[str, Scene] = {
         "robot=combined trajectory=quintic trajectory.duration=0.4 duration=0.03 controller.coupling=inertial_damping",
         ["controller.damping_gain"],
     ),
-    "whole body": Scene("robot=combined controller=whole_body trajectory=goal duration=0.03", ["controller"]),
+    "whole body": Scene(
+        "robot=combined controller=whole_body trajectory=quintic duration=0.03", ["controller"],
+        ["controller.max_tip_speed"],
+    ),
+    "whole body to a goal": Scene(
+        "robot=combined controller=whole_body trajectory=goal duration=0.03", ["controller.max_tip_speed"]
+    ),
     **{
         law: Scene(f"{_LAW} controller={law} noise.position=1e-4", ["controller"], _OF_TASK)
         for law in _LAWS if law not in ("operational_space", "impedance", "joint_pid")
@@ -216,7 +222,6 @@ LEFT_OUT: Mapping[str, str] = {
 
 _NEAR_SINGULAR = "acts near singular configurations only"
 EXCEPTIONS: Mapping[str, str] = {
-    "robot.settling_band": "a band of metrics of settled motions, which these runs are too short for",
     "controller.singularity_damping": _NEAR_SINGULAR,
     "controller.damping": _NEAR_SINGULAR,
     "sliding_mode controller.boundary_layer": "cancels within the layer: the gain is proportional to it",
