@@ -36,7 +36,7 @@ class _Rule(NamedTuple):
     """Keys without effect in some runs.
 
     Attributes:
-        keys: Keys, and groups of which all keys count.
+        keys: Keys, and groups with all their keys.
         reason: Function of a run; returns the reason, with the key on which the effect depends, or None if the keys
             act.
         but: Keys in these groups that do not count.
@@ -272,7 +272,7 @@ def _is_not_redundant(config: RunConfig) -> str | None:
 
 
 def _meets_no_wall(config: RunConfig) -> str | None:
-    return None if type(config.environment) is WallConfig else "environment is no wall"
+    return None if type(config.environment) is WallConfig else "environment is not a wall"
 
 
 _RULES = (

@@ -8,7 +8,7 @@ from runner.schema.model import StrictModel
 from runner.schema.units import Acceleration, Seconds
 
 COMPARED = ("bullet", "mujoco")
-"""Plants of which plant_error estimates the integration error."""
+"""Plants whose integration error plant_error estimates."""
 
 
 class RunSettings(StrictModel):

@@ -113,7 +113,7 @@ def sweep_typed(
 
 
 def find_idle_keys(plan: Plan) -> list[str]:
-    """Return a line for each key without effect in cells of a plan, up to 100 of which are evaluated."""
+    """Return a line for each key without effect in the cells of a plan; at most 100 are evaluated."""
     first = plan.composed(0)
     if first.root == CALIBRATION or not any(map(depends, given_keys(first))):
         return []

@@ -1,6 +1,6 @@
 """`python -m tools.option_walk`: change one option at a time, and tell which changes have no effect.
 
-A change must alter the trace or a metric and the hash of the run, or be rejected, or be told by a warning or caveat.
+A change must alter the hash of the run and the trace or a metric, or be rejected, or be reported by a warning.
 The table of scenes says which run feels which key. `made_up_kinds` adds a further kind to each registry.
 """
 

@@ -22,7 +22,7 @@ class Scene(NamedTuple):
 
     Attributes:
         overrides: Overrides of the run, on any plant.
-        feels: Keys, and groups of which all keys change.
+        feels: Keys, and groups with all their keys.
         but: Keys in these groups that another scene changes.
         options: Options of groups that replace those of the run, one at a time.
     """

@@ -23,7 +23,7 @@ from runner.store import run_hash
 from runner.symbolic import engine
 from tools.option_walk.scenes import CHANGED, ENGINES, EXCEPTIONS, LEFT_OUT, SCENES, Scene
 
-Verdict = Literal["acts", "told", "rejected", "excepted", "SILENT", "NOT IN THE HASH", "CRASHED"]
+Verdict = Literal["acts", "reported", "rejected", "excepted", "SILENT", "NOT IN THE HASH", "CRASHED"]
 FAULTS = ("SILENT", "NOT IN THE HASH", "CRASHED")
 _UNCLOCKED = ("tick_seconds", "law_seconds")
 _SLOW = 1e-4  # rad/s
@@ -49,13 +49,13 @@ class Outcome(NamedTuple):
     Attributes:
         name: Hash of the run; empty if it is rejected.
         content: Signals and metrics as bytes.
-        told: Warnings and caveats.
+        reported: Warnings and caveats.
         reason: Reason of the rejection.
     """
 
     name: str
     content: bytes
-    told: frozenset[str]
+    reported: frozenset[str]
     reason: str = ""
 
 
@@ -107,7 +107,7 @@ class Walk:
         self._folder, self._kept = folder, dict[tuple[str, ...], Outcome]()
 
     def judge(self, step: Step) -> tuple[Verdict, str]:
-        """Return the verdict on a change, and what was told."""
+        """Return the verdict on a change, and what was reported."""
         base = base_of(step.scene, step.engine)
         before = self._kept.get(tuple(base)) or self._kept.setdefault(tuple(base), self._run(base))
         key = step.change.lstrip("+").partition("=")[0]
@@ -120,8 +120,8 @@ class Walk:
         if after.content != before.content:
             same = after.name == before.name
             return ("NOT IN THE HASH", "") if same else ("acts", "")
-        if new := after.told - before.told:
-            return "told", "; ".join(sorted(new))
+        if new := after.reported - before.reported:
+            return "reported", "; ".join(sorted(new))
         reason = EXCEPTIONS.get(f"{step.scene} {key}") or EXCEPTIONS.get(key) or EXCEPTIONS.get(step.change.lstrip("+"))
         return ("excepted", reason) if reason else ("SILENT", "")
 
@@ -131,10 +131,10 @@ class Walk:
             result = simulate_run(config)
         except ConfigError as error:
             return Outcome("", b"", frozenset(), str(error))
-        told = [*result.provenance["warnings"], *(caveat.text for caveat in result.caveats.caveats)]
+        reported = [*result.provenance["warnings"], *(caveat.text for caveat in result.caveats.caveats)]
         values = {name: list(map(float, summary.values)) for name, summary in result.metrics.items()}
         content = [*_arrays(result.trace), json.dumps(values, sort_keys=True).encode(), repr(result.failure).encode()]
-        return Outcome(run_hash(config.resolved, config.arm.urdf), b"".join(content), frozenset(told))
+        return Outcome(run_hash(config.resolved, config.arm.urdf), b"".join(content), frozenset(reported))
 
 
 def _arrays(part: Any) -> Iterator[bytes]:

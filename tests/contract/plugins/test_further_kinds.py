@@ -89,7 +89,7 @@ def test_the_walk_finds_what_has_no_effect(folder, monkeypatch):
     judge = Walk(folder).judge
     assert judge(Step("arm", "rk4", "++controller.singularity_damping=0.33"))[0] == "SILENT"
     assert judge(Step("arm", "rk4", "++robot.payload.mass=1.0"))[0] == "acts"
-    assert judge(Step("arm", "rk4", "++noise.velocity_bandwidth=9.0"))[0] == "told"
+    assert judge(Step("arm", "rk4", "++noise.velocity_bandwidth=9.0"))[0] == "reported"
     assert judge(Step("arm", "rk4", "++robot.payload.mass=-1.0"))[0] == "rejected"
     monkeypatch.setattr("tools.option_walk.walk.run_hash", lambda *_: "same")
     assert Walk(folder).judge(Step("arm", "rk4", "++robot.payload.mass=1.0"))[0] == "NOT IN THE HASH"
