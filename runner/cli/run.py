@@ -27,11 +27,13 @@ from runner.store.kinds import WORD
 if TYPE_CHECKING:
     from omegaconf import DictConfig
 
+    from runner.config.composed import Composed
     from runner.store import Run
     from runner.store.axes import Axis
     from runner.sweeps.run import Ended
 
 _METRICS = 5
+_OF_SWEEPS = [f"sweep.{name}" for name in ("trace", "retry", "on_failure", "attempts", "time_limit")]
 _NAMES = (("robot", "name"), ("controller", "kind"), ("trajectory", "kind"))
 _FAILURES_SHOWN = 20
 _MOST_RANKED = 200  # cells; to read so many takes half a second
@@ -131,7 +133,20 @@ def _simulate(words: Sequence[str], config_dirs: Sequence[Path], command: str) -
     from runner.sweeps.job import RunJob, perform  # after validation, for the same reason
 
     run, made = perform(RunJob(config))
+    for text in _idle_in_one_run(composed):
+        print(one_line(f"runner: warning: {text}"), file=sys.stderr)
     return print_run(run, made, composed.resolved.get("caveats"))
+
+
+def _idle_in_one_run(composed: "Composed") -> list[str]:
+    """Return a line for each key of sweeps that the command line or an experiment sets for a single run."""
+    from runner.config.compose.given_keys import given_keys, swept_keys
+
+    found = [f"{key}: no effect, because one run is made; add -m" for key in given_keys(composed) if key in _OF_SWEEPS]
+    if swept := swept_keys(composed):
+        name = f"experiment={composed.choices['experiment']}"
+        found.append(f"{name}: {', '.join(swept)} not swept, because one run is made; add -m")
+    return found
 
 
 def _read_by_hydra(words: Sequence[str], config_dirs: Sequence[Path]) -> _Line:

@@ -12,10 +12,10 @@ from typing import Any
 import numpy as np
 
 from runner.base.trace import Trace
+from runner.config.settings import COMPARED as COMPARED
 
 PLANT = "rk4"
 """The plant with which others are compared."""
-COMPARED = ("bullet", "mujoco")
 PARTED = 4.0
 """Distance of the tips, in settling bands, beyond which two motions have parted. In runs of studies, the distance is at
 most 3 bands if no torque is at its limit, and 4.9 or more, mostly 10 to 55, if the motions take different paths."""

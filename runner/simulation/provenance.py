@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING, Any
 from runner.base.engines import STAND_IN, installed_versions
 from runner.base.machine import this_machine
 from runner.base.paths import package_dir
+from runner.config.dependent_keys import idle_keys
 from runner.plugins import discovery
 from runner.statistics.spec import today
 from runner.symbolic.engine import evaluator
@@ -50,7 +51,7 @@ def job_provenance(config: "RunConfig", notices: Sequence[str] = ()) -> dict[str
         "stages": {stage.name: stage.base_frame for stage in config.arm.stages},
         "joints": list(config.arm.model.joint_names),
         "seed": config.settings.seed,
-        "warnings": [*config.warnings, *notices],
+        "warnings": [*config.warnings, *idle_keys(config), *notices],
     }
 
 

@@ -6,6 +6,7 @@ import os
 import shutil
 import sys
 import time
+from collections import Counter
 from collections.abc import Generator, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from pathlib import Path
@@ -18,8 +19,13 @@ from omegaconf import DictConfig
 from runner import store
 from runner.base import progress
 from runner.base.errors import ConfigError, StoreError
+from runner.base.sanitize import one_line
 from runner.config.compose.composer import Composer
+from runner.config.compose.given_keys import given_keys
+from runner.config.composed import CALIBRATION
+from runner.config.dependent_keys import depends, idle_keys
 from runner.config.limits import SweepConfig, check_cpu_time, check_memory_together
+from runner.config.validation import validate
 from runner.plugins.discovery import has_users_parts, in_use
 from runner.store.atomic import remove_leftovers
 from runner.store.finished import FINER
@@ -37,6 +43,7 @@ from runner.sweeps.work import Report, find_calibrated
 from runner.sweeps.writer import Rules, TraceKeeping, one_in
 
 _DAMAGE_SHOWN = 10
+_LOOKED_AT = 100  # cells
 _ALL_TRACES_UP_TO = 3000  # runs; with more, sweep.trace=auto is sample
 
 
@@ -99,7 +106,21 @@ def sweep_typed(
     if len(plan) == 1:
         text = "nothing is swept, and a single run is made: no key has several values, as seed=0,1 has"
         print(f"runner: {text}", file=sys.stderr)
-    return run_sweep(plan, Engine(sweeper["workers"], sweeper["address"]), command)
+    ended = run_sweep(plan, Engine(sweeper["workers"], sweeper["address"]), command)
+    for line in find_idle_keys(plan):
+        print(one_line(f"runner: warning: {line}"), file=sys.stderr)
+    return ended
+
+
+def find_idle_keys(plan: Plan) -> list[str]:
+    """Return a line for each key without effect in the cells of a plan; at most 100 are evaluated."""
+    first = plan.composed(0)
+    if first.root == CALIBRATION or not any(map(depends, given_keys(first))):
+        return []
+    cells = range(0, len(plan), -(-len(plan) // _LOOKED_AT))
+    counts = Counter(line for cell in cells for line in idle_keys(validate(plan.composed(cell))))
+    of = f"{len(cells)} cells" if len(cells) == len(plan) else f"{len(cells)} evaluated cells"
+    return [line if count == len(cells) else f"{line} ({count} of {of})" for line, count in counts.items()]
 
 
 def run_sweep(plan: Plan, engine: Engine, command: str, accept_cut_short: bool = True) -> Ended:

@@ -149,4 +149,5 @@ def _count_ticks(config: IterativeLearningConfig) -> int:
 
 CONFIG = IterativeLearningConfig
 FOLLOWS_JOINTS = True
+TAKES_DRAWN = True
 build = joint_law_builder(IterativeLearning)

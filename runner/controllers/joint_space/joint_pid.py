@@ -88,4 +88,5 @@ def _useful(arm: Arm, torque: Scalar, limit: Scalar, step: Scalar) -> Array:
 
 CONFIG = JointPidConfig
 FOLLOWS_JOINTS = True
+TAKES_DRAWN = True
 build = joint_law_builder(JointPid)
