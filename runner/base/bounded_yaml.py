@@ -33,6 +33,11 @@ class Bounds:
     values: int
     depth: int = 30
 
+    @property
+    def too_deep(self) -> str:
+        """Return the message about a document that exceeds the depth."""
+        return f"nested deeper than {self.depth} levels; no config needs so many"
+
 
 CONFIG = Bounds(Limit(250_000, "bytes"), values=10_000)
 """Limits of a config file, enough for about 3,000 way-points, which take Hydra one second."""
@@ -85,6 +90,9 @@ def check_yaml(text: str, name: str | Path, bounds: Bounds = CONFIG, once: bool 
         for event in yaml.parse(text, Loader=yaml.CSafeLoader):
             scan.take(event)
     except yaml.YAMLError as error:
+        mark = getattr(error, "problem_mark", None)
+        if mark and "nesting depth" in str(error):  # newer LibYAML reads ahead, and stops at 1,000 levels
+            raise YamlError(f"{name}, line {mark.line + 1}: {bounds.too_deep}") from None
         raise YamlError(explain_yaml(error, name)) from None
 
 
@@ -168,7 +176,7 @@ class _Scan:
                 yield f"*{event.anchor} stands for nothing: there is no &{event.anchor} before it"
             return
         if len(self._open) > self._bounds.depth and isinstance(event, yaml.CollectionStartEvent):
-            yield f"nested deeper than {self._bounds.depth} levels; no config needs so many"
+            yield self._bounds.too_deep
         if event.tag not in (None, "!"):
             yield f"the tag {quoted(event.tag)} says how to make a value; remove it: values are plain"
         if isinstance(event, yaml.ScalarEvent) and calls_function(event.value) and not self._ours:

@@ -151,10 +151,11 @@ def _idle_in_one_run(composed: "Composed") -> list[str]:
 
 def _read_by_hydra(words: Sequence[str], config_dirs: Sequence[Path]) -> _Line:
     """Return the overrides of a line with flags of Hydra, read by Hydra's command after a check of the config."""
-    import hydra
-    from hydra._internal.utils import get_args_parser
+    from hydra import version
+    from hydra._internal.utils import _run_hydra
     from hydra.types import RunMode
 
+    from runner.cli.hydra_parser import hydra_parser
     from runner.config.compose.composer import Composer
     from runner.config.compose.composition_errors import COMPOSITION_ERRORS, explain
     from runner.config.compose.overrides import force
@@ -162,7 +163,8 @@ def _read_by_hydra(words: Sequence[str], config_dirs: Sequence[Path]) -> _Line:
 
     line = _Line()
     sys.argv = ["runner", *user_overrides(), *force(words), *(_WITHOUT_OURS if "--hydra-help" in words else ())]
-    given, others = get_args_parser().parse_known_args()
+    parser = hydra_parser()
+    given, others = parser.parse_known_args()
     if others:
         own = Parser(prog="runner run", add_help=False)
         add_arguments(own)
@@ -174,7 +176,8 @@ def _read_by_hydra(words: Sequence[str], config_dirs: Sequence[Path]) -> _Line:
             Composer(config_dirs, root).load(given.overrides, mode=mode)  # checks what Hydra does not
         with checked_sources([folder.resolve() for folder in config_dirs]):
             # The absolute path works from a console script and from a wheel, where a relative one does not.
-            hydra.main(version_base="1.3", config_path=str(conf_dir()), config_name="config")(line)()
+            version.setbase("1.3")
+            _run_hydra(given, parser, line, config_path=str(conf_dir()), config_name="config")
     except COMPOSITION_ERRORS as error:
         raise explain(error, config_dirs) from None
     return line

@@ -139,11 +139,6 @@ def _keeps_lengths(config: RunConfig) -> bool:
     return bool(np.array_equal(nominal.model.tip_jacobian(home), config.arm.model.tip_jacobian(home)))
 
 
-def _is_not_compared(config: RunConfig) -> str | None:
-    kind = config.plant.kind
-    return None if kind in COMPARED else f"plant={kind} is not compared with rk4; {' and '.join(COMPARED)} are"
-
-
 def _reads_no_tip(config: RunConfig) -> str | None:
     return None if config.endpoint_sensor.read_by else "endpoint_sensor.read_by is []: no loop reads the sensor"
 
@@ -277,7 +272,6 @@ def _meets_no_wall(config: RunConfig) -> str | None:
 
 _RULES = (
     _Rule(["mismatch"], _moves_ideally, but=["mismatch.length", "mismatch.kind"]),
-    _Rule(["plant_error"], _is_not_compared),
     _Rule(["endpoint_sensor"], _reads_no_tip),
     _Rule(["endpoint_sensor.velocity_bandwidth"], _measures_no_tip_velocity),
     _Rule(["joint_torque_sensor"], _reads_no_torques),

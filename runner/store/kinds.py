@@ -8,6 +8,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Literal
 
+from runner.base.bounded_json import decode_json
 from runner.base.errors import RunnerError, StoreError
 from runner.config.compose.files import outputs_dir
 
@@ -138,7 +139,7 @@ def _notes(outputs: Path, kinds: Sequence[Kind]) -> Iterator[tuple[int, Path]]:
     """Yield the order and the folder of the latest of some kinds; notes that cannot be read are ignored."""
     for kind in kinds:
         try:
-            content = json.loads((outputs / _NOTES / f"{KINDS[kind].folder}.json").read_bytes())
+            content = decode_json((outputs / _NOTES / f"{KINDS[kind].folder}.json").read_bytes())
             order, name = int(content["order"]), str(content["name"])
         except (OSError, ValueError, TypeError, KeyError):
             continue

@@ -15,6 +15,7 @@ from typing import Any
 
 import yaml
 
+from runner.base.bounded_json import decode_json
 from runner.base.bounded_yaml import STORED, YamlError, read_yaml
 from runner.base.cache import Memory
 from runner.base.errors import StoreError
@@ -100,10 +101,10 @@ def read_json(path: Path, remedy: str) -> dict[str, Any]:
         content = path.read_bytes()
         if excess := RECORD_VALUES.excess(sum(map(content.count, (b",", b":", b"[", b"{")))):
             raise ExcessError(excess)
-        record = json.loads(content)
+        record = decode_json(content)
     except OSError as error:
         raise DamagedError(f"cannot read {path}: {error.strerror}; {remedy}") from error
-    except (ValueError, RecursionError) as error:
+    except ValueError as error:
         raise DamagedError(f"cannot read {path}: it is damaged: {_short(error)}; {remedy}") from error
     schema = record.get("schema") if isinstance(record, dict) else None
     if type(schema) is not int:

@@ -20,6 +20,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from runner.base.arrays import FloatArray
+from runner.base.bounded_json import decode_json
 from runner.base.limits import ExcessError, open_parquet
 from runner.base.machine import Machine, read_machine
 from runner.store.atomic import write_atomically
@@ -222,11 +223,11 @@ def open_row(path: Path, row: int) -> Run:
     """
     values = _read_once(path, _COLUMNS)
     try:
-        config, record, names = (json.loads(values[column][row].as_py()) for column in ("config", "record", "metrics"))
+        config, record, names = (decode_json(values[column][row].as_py()) for column in ("config", "record", "metrics"))
         if "metrics" not in record:
             record["metrics"] = _summarize(_read_once(path, (), METRIC), row, names)
         fault = find_faults(record)
-    except (KeyError, ValueError, TypeError, RecursionError) as error:
+    except (KeyError, ValueError, TypeError) as error:
         fault = str(error)
     if fault:
         raise DamagedError(f"cannot read {path}: row {row} is no run: {fault}; {_REMEDY}")

@@ -1,11 +1,11 @@
 """Changes between two versions of a study: verdicts, findings, equations, caveats and numbers."""
 
-import json
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
+from runner.base.bounded_json import decode_json
 from runner.base.errors import RunnerError
 from runner.base.limits import RECORD, read_text
 from runner.base.machine import equal_up_to_rounding
@@ -54,7 +54,7 @@ def read_conclusions(path: Path) -> Mapping[str, Any]:
     """
     file = path / FILE if path.is_dir() else path
     try:
-        content = json.loads(read_text(file, RECORD))
+        content = decode_json(read_text(file, RECORD))
     except (OSError, ValueError) as error:
         raise RunnerError(f"cannot read {file}: {error}; `runner reproduce NAME --json > FILE` writes one") from None
     if not isinstance(content, dict) or not all(

@@ -74,7 +74,7 @@ def test_a_copied_run_is_read_elsewhere(run, tmp_path):
         ("metrics.json", b"", "metrics.json: it is damaged: Expecting value"),
         ("metrics.json", b'{"schema": 3, "sta', "metrics.json: it is damaged: Unterminated string"),
         ("metrics.json", b"\xff\xfe\x00\x01", "metrics.json: it is damaged: "),
-        ("metrics.json", b"[" * 100_000, "metrics.json: it is damaged: maximum recursion depth"),
+        ("metrics.json", b"[" * 100_000, "metrics.json: it is damaged: nested deeper than 100 levels"),
         ("metrics.json", b"1" * 6000, "metrics.json: it is damaged: Exceeds the limit"),
         ("metrics.json", b"[]", "metrics.json: it is damaged: it names no schema"),
         ("metrics.json", b"{}", "metrics.json: it is damaged: it names no schema"),

@@ -7,11 +7,12 @@ from runner.store import physics, syntax
 
 # Modules for finished runs, for output and storage, or for the resolved config, which is in the hash itself.
 OTHERS = {
-    "__init__.py", "__main__.py", "analysis", "api", "audit", "base/arrays.py", "base/bounded_yaml.py", "base/cache.py",
-    "base/data_file.py", "base/dotted_keys.py", "base/engine_output.py", "base/engines.py", "base/errors.py",
-    "base/expressions", "base/former_names.py", "base/lazy_modules.py", "base/limits.py", "base/machine.py",
-    "base/paths.py", "base/progress.py", "base/quantities.py", "base/sanitize.py", "base/ticks.py", "cli",
-    "config/compose", "config/composed.py", "config/json_schema.py", "config/judgement.py", "config/limits.py",
+    "__init__.py", "__main__.py", "analysis", "api", "audit", "base/arrays.py", "base/bounded_json.py",
+    "base/bounded_yaml.py", "base/cache.py", "base/data_file.py", "base/dotted_keys.py", "base/engine_output.py",
+    "base/engines.py", "base/errors.py", "base/expressions", "base/former_names.py", "base/lazy_modules.py",
+    "base/limits.py", "base/machine.py", "base/paths.py", "base/progress.py", "base/quantities.py", "base/sanitize.py",
+    "base/ticks.py", "cli", "config/compose", "config/composed.py", "config/json_schema.py", "config/judgement.py",
+    "config/limits.py",
     "controllers/stability.py", "doctor",
     "metrics/caveats",
     "plants/servo_contact_stability.py", "plugins/discovery.py", "plugins/folder_code.py", "recordings", "reporting",
