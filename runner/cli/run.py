@@ -123,7 +123,8 @@ def _simulate(words: Sequence[str], config_dirs: Sequence[Path], command: str) -
 
         composer = Composer(config_dirs, line.root)
         ours = [each for each in overrides if not each.startswith(_OF_SWEEPER)]
-        return print_sweep(sweep_typed(ours, composer.sweeper(overrides), composer, command))
+        of_sweeper = [each for each in overrides if each.startswith(_OF_SWEEPER)]
+        return print_sweep(sweep_typed(ours, of_sweeper, composer, command))
     composed = compose(overrides, config_dirs, line.root)
     from runner.config.validation import validate  # after the composition, so that errors are reported at once
 

@@ -6,14 +6,12 @@ import os
 import shutil
 import sys
 import time
-from collections.abc import Generator, Iterator, Mapping, Sequence
+from collections.abc import Generator, Iterator, Sequence
 from dataclasses import dataclass, field, replace
 from pathlib import Path
-from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
-from omegaconf import DictConfig
 
 from runner import store
 from runner.base import progress
@@ -30,9 +28,10 @@ from runner.sweeps.differing import Resolved
 from runner.sweeps.engine import in_process, local_client, on_cluster, remote_client
 from runner.sweeps.estimate import START_UP, Estimate, Pace, estimate
 from runner.sweeps.outcomes import Ends
-from runner.sweeps.plan import Grid, Plan
+from runner.sweeps.plan import Plan
 from runner.sweeps.queue import Queue
 from runner.sweeps.status import at_work
+from runner.sweeps.typed import plan_typed
 from runner.sweeps.work import Report, find_calibrated
 from runner.sweeps.writer import Rules, TraceKeeping, one_in
 
@@ -82,24 +81,20 @@ class Ended:
     resolved: Resolved = field(compare=False)
 
 
-def sweep_typed(
-    arguments: Sequence[str], sweeper: DictConfig | Mapping[str, Any], source: Composer, command: str
-) -> Ended:
+def sweep_typed(arguments: Sequence[str], of_sweeper: Sequence[str], source: Composer, command: str) -> Ended:
     """Execute the missing runs of a command line.
 
     Args:
         arguments: Overrides as typed, without those of Hydra itself.
-        sweeper: Values of hydra.sweeper: workers, address, and params, the values by key from a file. Values on the
-            command line replace those of params.
+        of_sweeper: Overrides of hydra.sweeper: workers, address and params.
         source: Composer of the configs.
         command: The command line, stored with the sweep.
     """
-    params = [f"{key}={value}" for key, value in (sweeper["params"] or {}).items()]
-    plan = Grid([*params, *arguments], source)
+    plan, sweeper = plan_typed(arguments, source, of_sweeper)
     if len(plan) == 1:
         text = "nothing is swept, and a single run is made: no key has several values, as seed=0,1 has"
         print(f"runner: {text}", file=sys.stderr)
-    return run_sweep(plan, Engine(sweeper["workers"], sweeper["address"]), command)
+    return run_sweep(plan, Engine(sweeper.workers, sweeper.address), command)
 
 
 def run_sweep(plan: Plan, engine: Engine, command: str, accept_cut_short: bool = True) -> Ended:

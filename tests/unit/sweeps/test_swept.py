@@ -38,7 +38,7 @@ def test_options_of_groups_are_told_from_values():
         False,
         False,
         True,
-        True,
+        False,
     ]
     assert "macro" in keys("robot=glob(m*)")[0].values
 
