@@ -16,7 +16,7 @@ from collections.abc import Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from runner.base.errors import RunnerError
+from runner.base.errors import RunnerError, unknown
 from runner.base.paths import conf_dir
 from runner.base.sanitize import one_line
 from runner.cli.arguments import Parser
@@ -42,6 +42,7 @@ _WITHOUT_OURS = (
     "hydra.output_subdir=null",
 )  # fmt: skip
 _MANY, _OF_SWEEPER = ("-m", "--multirun"), "hydra.sweeper."
+_SHOWN = ("job", "hydra", "all")
 
 
 def add_arguments(parser: Parser) -> None:
@@ -49,7 +50,7 @@ def add_arguments(parser: Parser) -> None:
     parser.add_overrides("such as robot=macro; lists in a sweep, such as seed=0,1")
     parser.add_argument(*_MANY, action="store_true", help="simulate a sweep over every combination")
     _add_own(parser)
-    parser.add_argument("-c", "--cfg", choices=("job", "hydra", "all"), help="print the config, without a simulation")
+    parser.add_argument("-c", "--cfg", choices=_SHOWN, help="print the config, without a simulation")
     parser.add_argument("--hydra-help", action="store_true", help="show all flags of Hydra")
     parser.add_argument("--version", action="store_true", help="show the version")
 
@@ -69,8 +70,13 @@ def simulate(words: Sequence[str]) -> int:
     """Simulate the run or the sweep of a line; print the folder as the last line."""
     own = Parser(prog="runner run", add_help=False)
     _add_own(own)
-    given, others = own.parse_known_args(words)
+    given, others = own.parse_known_args(_join_flags(words))
     typed = shlex.join(["runner", *words])
+    for shown in (word.partition("=")[2] for word in others if word.partition("=")[0] == "--cfg"):
+        if shown not in _SHOWN:
+            raise RunnerError(unknown("name", shown, _SHOWN, "--cfg"))
+        if any(word in _MANY for word in others):
+            raise RunnerError("--cfg: prints the config of one run. Leave out -m, and give each key one value.")
     if given.output is not None:
         others.append(f"outputs={given.output}")
     if given.jobs is not None:
@@ -78,6 +84,20 @@ def simulate(words: Sequence[str]) -> int:
             raise RunnerError("--jobs: one run uses one process. Add -m for a sweep.")
         others.append(f"hydra.sweeper.workers={given.jobs}")
     return _simulate(others, given.config_dir, typed)
+
+
+def _join_flags(words: Sequence[str]) -> list[str]:
+    """Return a line in which Hydra's flags of the config are one word with their value, such as --cfg=job.
+
+    argparse would complete -c to -cd, and the value of --package is no override.
+    """
+    joined: list[str] = []
+    for word in words:
+        if joined and joined[-1] in ("--cfg", "--package") and not word.startswith("-"):
+            joined[-1] += f"={word}"
+        else:
+            joined.append({"-c": "--cfg", "-p": "--package"}.get(word, word))
+    return joined
 
 
 class _Line:

@@ -74,7 +74,7 @@ class SweptKey:
         return same and not self._has_mapping and not (earlier.option and earlier._has_mapping)
 
     def needs_order(self, other: "SweptKey") -> bool:
-        """Return True if the order of two entries matters: of values, one of which is within the other."""
+        """Return True if both entries set values, and one sets a part of what the other sets."""
         if any(each.option and not each._has_mapping for each in (self, other)):
             return False
         one, two = f"{self.name}.", f"{other.name}."
@@ -150,7 +150,7 @@ def _read(override: Override, groups: Sequence[str]) -> SweptKey:
     if not isinstance(values, range) and any(map(_has_function, values)):
         raise ConfigError(
             f"{name}: a function inside a list of values ({quoted(typed.partition('=')[2])}). "
-            "Allowed: one function that has all values, such as choice(1,2,3), or values alone, such as 1,2,3"
+            "Allowed: one function that has all values, such as choice(1,2,3), or only values, such as 1,2,3"
         )
     return _key(name, override.get_key_element(), values, groups, "" if swept else typed)
 

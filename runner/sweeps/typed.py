@@ -49,7 +49,7 @@ def _axes(params: DictConfig | None) -> list[str]:
 def _lost_axes(
     key: SweptKey, fixed: Sequence[str], params: Mapping[str, Any] | None, source: Composer
 ) -> Iterator[str]:
-    """Yield a problem for each of several options that brings axes of its own."""
+    """Yield a problem for each of several options that brings axes."""
     numbers = [number for number in range(len(key.values)) if key.chooses(number)] if len(key.values) > 1 else []
     for number in numbers:
         try:
@@ -60,5 +60,5 @@ def _lost_axes(
             names = ", ".join(text.partition("=")[0] for text in _axes(own))
             yield (
                 f"{key.override(number)}: brings axes ({names}), which a list of options does not sweep over. Allowed: "
-                f"one option alone, one sweep after the other, or all in one grid: {key.name}=[A,B]"
+                f"a single option, one sweep after the other, or all in one grid: {key.name}=[A,B]"
             )

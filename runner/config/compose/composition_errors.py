@@ -15,7 +15,7 @@ from runner.base.sanitize import VALUE, one_line, quoted
 from runner.config.compose.files import group_options
 from runner.config.compose.overrides import explain_parser
 
-_AMBIGUOUS = re.compile(r"Ambiguous value for argument '(.*)'$", re.M)
+_AMBIGUOUS = re.compile(r"(?:Ambiguous value for argument|Sweep parameters) '(.*)'(?:$| requires)", re.M)
 _LACKING = re.compile(r"Interpolation key '(.*)' not found")
 _NO_GROUP = re.compile(r".* trying to access (\S+): node `(\S+)` is not a container")
 # Exceptions of Hydra for a config that it cannot compose. ValueError and OSError: a file that is not text, or not a

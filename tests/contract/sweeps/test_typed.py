@@ -98,7 +98,7 @@ def test_axes_of_an_experiment_are_swept_over(own, tmp_path):
         assert [cell.resolved["seed"] for cell in cells(*line, config_dirs=[tmp_path])] == [0, 1]
     assert len(cells("experiment=[two_seeds,two_periods]", config_dirs=[tmp_path])) == 4
     assert len(cells("experiment=two_seeds", "seed=5", config_dirs=[tmp_path])) == 1
-    assert len(cells("experiment=no_axes,null", "seed=1,2,3", config_dirs=[tmp_path])) == 6
+    assert len(cells("experiment=no_axes,thesis/figure_3_5", "seed=1,2,3", config_dirs=[tmp_path])) == 6
 
 
 @pytest.mark.parametrize(
