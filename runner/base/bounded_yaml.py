@@ -4,6 +4,7 @@ A few lines of YAML can expand to more values than fit in memory (aliases of ali
 data (an anchor that contains itself), or nesting too deep for any loader. All checks run before any object is built.
 """
 
+import re
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass, field
 from pathlib import Path
@@ -75,8 +76,8 @@ def check_yaml(text: str, name: str | Path, bounds: Bounds = CONFIG, once: bool 
 
     Raises:
         YamlError: if the document is not valid YAML or exceeds a limit, if an anchor contains itself, a key is not a
-            string, a value has a tag, or a value has a ${...} that is not a reference to a key. The last is allowed in
-            built-in configs only.
+            string, a value has a tag, or a number is not decimal, or a value has a ${...} that is not a reference to a
+            key. The last two are allowed in built-in configs only.
     """
     if excess := bounds.size.excess(len(text.encode(errors="replace"))):
         raise YamlError(f"{name}: {excess}")
@@ -109,6 +110,19 @@ def line_with(text: str, path: Path) -> str:
         if value and (value == text or f".{key}".endswith(f".{value}")):
             return line_of(event, str(path))
     return str(path)
+
+
+# Plain scalars that YAML 1.1 reads in another base: 0b101 as 5, 0x10 as 16, 010 as 8, and 1:30 as 90, in base 60.
+_OTHER_BASE = re.compile(r"[-+]?(0b[01_]+|0x[\da-fA-F_]+|0[0-7_]+|\d[\d_]*(:[0-5]?\d)+(\.[\d_]*)?)")
+
+_DIGITS = 40  # more than any valid number has
+
+
+def _not_decimal(text: str) -> Iterator[str]:
+    """Yield a problem for a plain scalar that YAML reads as a number in another base."""
+    number = yaml.load(text, yaml.CSafeLoader) if len(text) <= _DIGITS and _OTHER_BASE.fullmatch(text) else text
+    if not isinstance(number, str):
+        yield f"{text} is no decimal number, and YAML reads it as {number}; write {number}, or put it in quotes"
 
 
 @dataclass
@@ -173,6 +187,8 @@ class _Scan:
             yield f"the tag {quoted(event.tag)} says how to make a value; remove it: values are plain"
         if isinstance(event, yaml.ScalarEvent) and calls_function(event.value) and not self._ours:
             yield f"{quoted(event.value)} calls a function; a file may only refer to keys, as in ${{robot.period}}"
+        if isinstance(event, yaml.ScalarEvent) and event.implicit[0] and not self._ours:
+            yield from _not_decimal(event.value)
         if self._open[-1].key_next and not self._is_text(event):
             found = quoted(event.value) if isinstance(event, yaml.ScalarEvent) else "a collection"
             yield f"the key {found} is no text; put it in quotes, or look for a typing error"

@@ -2,9 +2,11 @@
 
 import math
 from collections.abc import Iterator, Sequence
+from functools import lru_cache
 from typing import get_args
 
 from pydantic import BaseModel, ConfigDict
+from pydantic.fields import FieldInfo
 
 from runner.base.sanitize import quoted
 from runner.schema.units import Unit
@@ -16,8 +18,8 @@ class StrictModel(BaseModel):
     model_config = ConfigDict(extra="forbid", strict=True, allow_inf_nan=False, frozen=True)
 
     @classmethod
-    def find_unit(cls, path: Sequence[str]) -> Unit | None:
-        """Return the unit of a key below this model; None if there is no such key.
+    def find_field(cls, path: Sequence[str]) -> FieldInfo | None:
+        """Return the field of a key below this model; None if there is no such key.
 
         Args:
             path: Keys that lead to the key, such as ["stages", "macro", "home"]; the method ignores keys and indices
@@ -28,9 +30,29 @@ class StrictModel(BaseModel):
             return None
         field = cls.model_fields[name]
         inner, of_one = nested_model(field.annotation), rest[1:] if rest and rest[0].isdecimal() else rest
-        if inner is not None and of_one:
-            return inner.find_unit(of_one)
-        return next((each for each in field.metadata if isinstance(each, Unit)), Unit())
+        return inner.find_field(of_one) if inner is not None and of_one else field
+
+    @classmethod
+    def find_unit(cls, path: Sequence[str]) -> Unit | None:
+        """Return the unit of a key below this model; None if there is no such key. See find_field."""
+        field = cls.find_field(path)
+        return None if field is None else next((each for each in field.metadata if isinstance(each, Unit)), Unit())
+
+
+@lru_cache(maxsize=1024)
+def holds_floats(annotation: object) -> bool:
+    """Return True if the numbers in a field of a model are floats, not integers."""
+    types = set(_types(annotation))
+    return float in types and int not in types
+
+
+def _types(annotation: object) -> Iterator[object]:
+    """Yield the types in an annotation, such as float in `list[PositiveFloat] | None`."""
+    inner = get_args(annotation)
+    if not inner:
+        yield annotation
+    for part in inner[:1] if hasattr(annotation, "__metadata__") else inner:
+        yield from _types(part)
 
 
 def nested_model(annotation: object) -> type[StrictModel] | None:

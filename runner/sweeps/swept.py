@@ -195,7 +195,8 @@ def range_values(override: Override) -> Sequence[int] | Sequence[float]:
         )
     count = max(0, math.ceil((stop - start) / step))
     if isinstance(found.start, int) and isinstance(found.step, int):
-        return range(found.start, found.start + count * found.step, found.step)
+        end = found.stop if isinstance(found.stop, int) else found.start + count * found.step
+        return range(found.start, end, found.step)
     return [float(start + number * step) for number in range(count)]
 
 
