@@ -122,7 +122,7 @@ def _not_decimal(text: str) -> Iterator[str]:
     """Yield a problem for a plain scalar that YAML reads as a number in another base."""
     number = yaml.load(text, yaml.CSafeLoader) if len(text) <= _DIGITS and _OTHER_BASE.fullmatch(text) else text
     if not isinstance(number, str):
-        yield f"{text} is no decimal number, and YAML reads it as {number}; write {number}, or put it in quotes"
+        yield f"{text} is not a decimal number, and YAML reads it as {number}; write {number}, or put it in quotes"
 
 
 @dataclass

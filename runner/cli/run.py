@@ -57,7 +57,13 @@ def add_arguments(parser: Parser) -> None:
 
 def _add_own(parser: Parser) -> None:
     parser.add_shared(
-        "config_dir", output="outputs folder (default: outputs)", jobs="number of processes of a sweep (default: 2)"
+        "config_dir",
+        output="outputs folder (default: outputs)",
+        jobs="number of processes of a sweep (default: 2)",
+        json="with --dry-run: print all cells as JSON",
+    )
+    parser.add_argument(
+        "--dry-run", action="store_true", help="print the cells and the expected time; simulate and store nothing"
     )
 
 
@@ -83,13 +89,20 @@ def simulate(words: Sequence[str]) -> int:
         if not any(word in _MANY for word in others):
             raise RunnerError("--jobs: one run uses one process. Add -m for a sweep.")
         others.append(f"hydra.sweeper.workers={given.jobs}")
-    return _simulate(others, given.config_dir, typed)
+    if given.json and not given.dry_run:
+        raise RunnerError("--json: prints the cells of a preview. Add --dry-run.")
+    line, overrides = _read_line(others, given.config_dir)
+    if line.overrides is None:
+        return 0  # --cfg, --hydra-help and the like
+    if given.dry_run:
+        return _preview(line, overrides, given.config_dir, given.json)
+    return _simulate(line, overrides, given.config_dir, typed)
 
 
 def _join_flags(words: Sequence[str]) -> list[str]:
     """Return a line in which Hydra's flags of the config are one word with their value, such as --cfg=job.
 
-    argparse would complete -c to -cd, and the value of --package is no override.
+    argparse would complete -c to -cd, and read the value of --package as an override.
     """
     joined: list[str] = []
     for word in words:
@@ -126,25 +139,30 @@ class _Line:
         self.overrides, self.root = [*found["task"], *of_sweeper], node.job.config_name
 
 
-def _simulate(words: Sequence[str], config_dirs: Sequence[Path], command: str) -> int:
-    """Simulate the run or the sweep of a line with flags of Hydra; print its folder as the last line."""
-    from runner.config.compose.compose import compose
-    from runner.config.compose.composer import Composer
-
+def _read_line(words: Sequence[str], config_dirs: Sequence[Path]) -> tuple[_Line, list[str]]:
+    """Return a line, and its overrides without the prefix ++."""
     if any(word.startswith("-") and word not in _MANY for word in words):
         line = _read_by_hydra(words, config_dirs)
     else:
         line = _Line([word for word in words if word not in _MANY], any(word in _MANY for word in words))
-    if line.overrides is None:
-        return 0  # --cfg, --hydra-help and the like
-    overrides = [each.removeprefix("++") for each in line.overrides]
+    return line, [each.removeprefix("++") for each in line.overrides or ()]
+
+
+def _split(overrides: Sequence[str]) -> tuple[list[str], list[str]]:
+    """Return the overrides of the config, and those of the sweeper."""
+    ours = [each for each in overrides if not each.startswith(_OF_SWEEPER)]
+    return ours, [each for each in overrides if each.startswith(_OF_SWEEPER)]
+
+
+def _simulate(line: _Line, overrides: Sequence[str], config_dirs: Sequence[Path], command: str) -> int:
+    """Simulate the run or the sweep of a line; print its folder as the last line."""
+    from runner.config.compose.compose import compose
+    from runner.config.compose.composer import Composer
+
     if line.many:
         from runner.sweeps.run import sweep_typed
 
-        composer = Composer(config_dirs, line.root)
-        ours = [each for each in overrides if not each.startswith(_OF_SWEEPER)]
-        of_sweeper = [each for each in overrides if each.startswith(_OF_SWEEPER)]
-        return print_sweep(sweep_typed(ours, of_sweeper, composer, command))
+        return print_sweep(sweep_typed(*_split(overrides), Composer(config_dirs, line.root), command))
     composed = compose(overrides, config_dirs, line.root)
     from runner.config.validation import validate  # after the composition, so that errors are reported at once
 
@@ -153,6 +171,27 @@ def _simulate(words: Sequence[str], config_dirs: Sequence[Path], command: str) -
 
     run, made = perform(RunJob(config))
     return print_run(run, made, composed.resolved.get("caveats"))
+
+
+def _preview(line: _Line, overrides: Sequence[str], config_dirs: Sequence[Path], as_json: bool) -> int:
+    """Print what the line would simulate."""
+    from runner.cli.preview import print_preview
+    from runner.config.compose.composer import Composer
+    from runner.sweeps.plan import Grid
+    from runner.sweeps.preview import preview
+    from runner.sweeps.run import Engine
+    from runner.sweeps.typed import plan_typed
+
+    composer = Composer(config_dirs, line.root)
+    ours, of_sweeper = _split(overrides)
+    if line.many:
+        plan, sweeper = plan_typed(ours, composer, of_sweeper)
+        engine = Engine(sweeper.workers, sweeper.address)
+    else:
+        composer.load(overrides)  # rejects several values
+        plan, engine = Grid(ours, composer), Engine(0, None)
+    print_preview(plan, preview(plan, engine), as_json)
+    return 0
 
 
 def _read_by_hydra(words: Sequence[str], config_dirs: Sequence[Path]) -> _Line:
@@ -164,7 +203,7 @@ def _read_by_hydra(words: Sequence[str], config_dirs: Sequence[Path]) -> _Line:
     from runner.config.compose.composer import Composer
     from runner.config.compose.composition_errors import COMPOSITION_ERRORS, explain
     from runner.config.compose.overrides import force
-    from runner.config.compose.sources import checked_sources
+    from runner.config.compose.sources import VERSION_BASE, checked_sources
 
     line = _Line()
     sys.argv = ["runner", *user_overrides(), *force(words), *(_WITHOUT_OURS if "--hydra-help" in words else ())]
@@ -180,7 +219,7 @@ def _read_by_hydra(words: Sequence[str], config_dirs: Sequence[Path]) -> _Line:
             Composer(config_dirs, root).load(given.overrides, mode=mode)  # checks what Hydra does not
         with checked_sources([folder.resolve() for folder in config_dirs]):
             # The absolute path works from a console script and from a wheel, where a relative one does not.
-            hydra.main(version_base="1.3", config_path=str(conf_dir()), config_name="config")(line)()
+            hydra.main(config_path=str(conf_dir()), config_name="config", **VERSION_BASE)(line)()
     except COMPOSITION_ERRORS as error:
         raise explain(error, config_dirs) from None
     return line

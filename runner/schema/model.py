@@ -34,7 +34,7 @@ class StrictModel(BaseModel):
 
     @classmethod
     def find_unit(cls, path: Sequence[str]) -> Unit | None:
-        """Return the unit of a key below this model; None if there is no such key. See find_field."""
+        """Return the unit of a key below this model; None for an unknown key. See find_field."""
         field = cls.find_field(path)
         return None if field is None else next((each for each in field.metadata if isinstance(each, Unit)), Unit())
 

@@ -135,7 +135,7 @@ def make_missing(plan: Plan, checked: Checked, rules: Rules, engine: Engine) -> 
         StoreError: if a result cannot be written, or a worker fails.
     """
     names = checked.names
-    ends = _find_stored(checked, rules)
+    ends = find_stored(checked, rules)
     stored = len(ends)
     left = ends.left[np.argsort(-checked.costs[ends.left], kind="stable")]
     queue = Queue(plan.alike, names, checked.costs, left, rules)
@@ -177,7 +177,7 @@ def make_rules(settings: SweepConfig, folder: Path, runs: int) -> Rules:
     )
 
 
-def _find_stored(checked: Checked, rules: Rules) -> Ends:
+def find_stored(checked: Checked, rules: Rules) -> Ends:
     """Return the outcomes of the jobs that count as done; a run that must keep its trace counts only with its trace."""
     finished = store.Finished(rules.outputs)
     ends = Ends(checked.names)
@@ -263,20 +263,27 @@ def _workers(queue: Queue, jobs: int, engine: Engine, expected: Estimate) -> Ite
             _tell(expected.in_words(processes, processes))
             yield reports
     elif seconds := _seconds_in_process(queue.rules, min(engine.workers, jobs), expected):
-        _tell(expected.in_words(1, 1))
+        _tell(duration_text(queue.rules, jobs, engine, expected))
         with contextlib.closing(_begun_in_process(queue, engine.workers, seconds)) as reports:
             yield reports
     else:
+        _tell(duration_text(queue.rules, jobs, engine, expected))
         workers = min(engine.workers, jobs)
-        together = min(workers, os.cpu_count() or 1)
-        start = START_UP * workers / together
-        _tell(expected.in_words(workers, together, start))
         progress.begin("starting processes")
         with (
             local_client(workers, _scratch(queue.rules)) as client,
             contextlib.closing(on_cluster(queue, client)) as reports,
         ):
             yield reports
+
+
+def duration_text(rules: Rules, jobs: int, engine: Engine, expected: Estimate) -> str:
+    """Return the expected duration of jobs on this machine in words; one process has all jobs of a short sweep."""
+    workers = min(engine.workers, jobs)
+    if _seconds_in_process(rules, workers, expected):
+        return expected.in_words(1, 1)
+    together = min(workers, os.cpu_count() or 1)
+    return expected.in_words(workers, together, START_UP * workers / together)
 
 
 def _seconds_in_process(rules: Rules, workers: int, expected: Estimate) -> float:

@@ -92,7 +92,7 @@ def test_a_config_may_hold_thousands_of_way_points():
 )
 def test_a_number_of_another_base_is_refused_with_what_it_is(text, number):
     with pytest.raises(
-        YamlError, match=rf"^mine, line 2: {text} is no decimal number, and YAML reads it as {number}; "
+        YamlError, match=rf"^mine, line 2: {text} is not a decimal number, and YAML reads it as {number}; "
     ):
         read_yaml(f"a: 1\nb: [{text}]", "mine")
 
