@@ -16,6 +16,7 @@ from functools import lru_cache
 from pathlib import Path
 from typing import Any
 
+import hydra
 from hydra.core.config_search_path import ConfigSearchPath
 from hydra.core.object_type import ObjectType
 from hydra.core.plugins import Plugins
@@ -73,7 +74,10 @@ class FunctionSource(ConfigSource):
         return name.removesuffix(".yaml") if group == CONTROLLERS.group else ""
 
 
+VERSION_BASE: Mapping[str, Any] = {"version_base": "1.3"} if hydra.__version__.startswith("1.3.") else {}
+"""Argument of Hydra's functions for the present defaults; from Hydra 1.4 on they have these without the argument."""
 _SCHEME = "checked"
+_DEFAULT_PLANT = "plant/default.yaml"  # names the plant that is installed
 _USERS = "command-line"  # Hydra's name of where such a folder comes from
 _HEAD = 512  # characters that Hydra searches for the package of a file
 _ENDS = re.compile(r"_global_.?|[./:@]")  # of the parts of a package; a package after `_global_` is absolute
@@ -84,12 +88,10 @@ _folders: ContextVar[Sequence[Path] | None] = ContextVar("folders", default=None
 def checked_sources(config_dirs: Sequence[Path]) -> Iterator[None]:
     """Let Hydra find and read config files only with CheckedSource, in conf/ and in folders of the user.
 
-    In the folder of a study, names of experiments begin with the name of the study; see place_in. Only
-    conf/plant/default.yaml calls a function.
+    In the folder of a study, names of experiments begin with the name of the study; see place_in.
     """
     for plugin in (CheckedSource, CheckedSearchPath, FunctionSource):
         Plugins.instance().register(plugin)
-    OmegaConf.register_new_resolver("default_plant", lambda: f"/plant/{default_plant()}", replace=True)
     before = _folders.set(config_dirs)
     try:
         yield
@@ -167,6 +169,8 @@ class CheckedSource(ConfigSource):
         check_inside(path, [Path(self.path)])
         status = path.stat()
         content, package = pickle.loads(_read(path, status.st_mtime_ns, status.st_size))  # noqa: S301 - made by _read
+        if path == conf_dir() / _DEFAULT_PLANT:
+            content["defaults"] = [f"/plant/{default_plant()}@_here_"]
         if not ships(path):
             if self.provider == _USERS and self._has_ours(config_path):  # ambiguous name
                 group, _, option = config_path.rpartition("/")
