@@ -16,7 +16,6 @@ from yaml.resolver import Resolver
 from runner.base.dotted_keys import calls_function
 from runner.base.errors import RunnerError
 from runner.base.limits import Limit
-from runner.base.paths import ships
 from runner.base.sanitize import quoted
 
 
@@ -76,12 +75,12 @@ def check_yaml(text: str, name: str | Path, bounds: Bounds = CONFIG, once: bool 
 
     Raises:
         YamlError: if the document is not valid YAML or exceeds a limit, if an anchor contains itself, a key is not a
-            string, a value has a tag, or a number is not decimal, or a value has a ${...} that is not a reference to a
-            key. The last two are allowed in built-in configs only.
+            string, a value has a tag, a number is not decimal, or a value has a ${...} that is not a reference to a
+            key.
     """
     if excess := bounds.size.excess(len(text.encode(errors="replace"))):
         raise YamlError(f"{name}: {excess}")
-    scan = _Scan(str(name), bounds, once, isinstance(name, Path) and ships(name))
+    scan = _Scan(str(name), bounds, once)
     try:
         for event in yaml.parse(text, Loader=yaml.CSafeLoader):
             scan.take(event)
@@ -136,8 +135,8 @@ class _Open:
 
 
 class _Scan:
-    def __init__(self, name: str, bounds: Bounds, once: bool, ours: bool) -> None:
-        self._name, self._bounds, self._once, self._ours = name, bounds, once, ours
+    def __init__(self, name: str, bounds: Bounds, once: bool) -> None:
+        self._name, self._bounds, self._once = name, bounds, once
         self._open = [_Open(None, 0, None)]
         self._sizes: dict[str, int] = {}
         self._resolver = Resolver()
@@ -185,9 +184,9 @@ class _Scan:
             yield f"nested deeper than {self._bounds.depth} levels; no config needs so many"
         if event.tag not in (None, "!"):
             yield f"the tag {quoted(event.tag)} says how to make a value; remove it: values are plain"
-        if isinstance(event, yaml.ScalarEvent) and calls_function(event.value) and not self._ours:
+        if isinstance(event, yaml.ScalarEvent) and calls_function(event.value):
             yield f"{quoted(event.value)} calls a function; a file may only refer to keys, as in ${{robot.period}}"
-        if isinstance(event, yaml.ScalarEvent) and event.implicit[0] and not self._ours:
+        if isinstance(event, yaml.ScalarEvent) and event.implicit[0]:
             yield from _not_decimal(event.value)
         if self._open[-1].key_next and not self._is_text(event):
             found = quoted(event.value) if isinstance(event, yaml.ScalarEvent) else "a collection"

@@ -11,7 +11,7 @@ if TYPE_CHECKING:
     from runner.sweeps.plan import Grid
     from runner.sweeps.preview import Preview
 
-_MOST_LISTED = 1000  # values of an axis, of which a few are printed
+_MOST_LISTED = 1000  # values of an axis that are read; a few are printed
 
 
 def print_preview(plan: "Grid", found: "Preview", as_json: bool) -> None:

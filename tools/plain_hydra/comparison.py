@@ -26,7 +26,7 @@ from tools.plain_hydra.meant import reason_for
 
 OUTCOMES = ("same", "both refuse", "different", "runner refuses", "Hydra refuses")
 _RANDOM = 1000
-_COMPOSED = 3  # cells of a line that are composed; the overrides of all are counted
+_COMPOSED = 3
 
 
 def main() -> bool:
@@ -36,23 +36,28 @@ def main() -> bool:
         outcomes: Counter[str] = Counter()
         reasons: Counter[str] = Counter()
         for line in lines:
-            outcome, told = compare(line)
+            outcome, difference = compare(line)
             reason = reason_for(line, outcome)
             outcomes[outcome] += 1
             if outcome not in OUTCOMES[:2]:
                 reasons[reason or "NOT MEANT"] += 1
                 if not reason:
                     passed = False
-                    print(f"  NOT MEANT, {outcome}: {' '.join(line)}\n    {told}")
+                    print(f"  NOT MEANT, {outcome}: {' '.join(line)}\n    {difference}")
         print(f"{name}: {len(lines)} lines: " + ", ".join(f"{outcomes[each]} {each}" for each in OUTCOMES))
         for reason, count in reasons.most_common():
             print(f"  {count:4}  {reason}")
     return passed
 
 
-def compare(line: Sequence[str]) -> tuple[str, str]:
-    """Return the outcome of a line, one of OUTCOMES, and the first difference or refusal."""
-    ours, theirs = _of_runner(line), _of_hydra(line)
+def compare(line: Sequence[str], composed: int = _COMPOSED) -> tuple[str, str]:
+    """Return the outcome of a line, one of OUTCOMES, and the first difference or refusal.
+
+    Args:
+        line: The overrides.
+        composed: Number of cells to compose, of the last, the middle and the first one; all cells are counted.
+    """
+    ours, theirs = _of_runner(line, composed), _of_hydra(line, composed)
     if isinstance(ours, str) or isinstance(theirs, str):
         refused = isinstance(ours, str), isinstance(theirs, str)
         outcome = {(True, True): "both refuse", (True, False): "runner refuses"}.get(refused, "Hydra refuses")
@@ -70,29 +75,31 @@ Cells = tuple[int, list[dict[str, Any]]]
 """Number of cells, and the configs of a few of them."""
 
 
-def _few(count: int) -> list[int]:
-    return sorted({count * part // (_COMPOSED - 1) - (part > 0) for part in range(_COMPOSED)} & {*range(count)})
+def _few(count: int, composed: int) -> list[int]:
+    return sorted({0, count // 2, count - 1} & {*range(count)})[-composed:]
 
 
-def _of_runner(line: Sequence[str]) -> Cells | str:
+def _of_runner(line: Sequence[str], composed: int) -> Cells | str:
     ours = [text.removeprefix("++") for text in line if not text.startswith("hydra.")]
     try:
         plan, _ = plan_typed(ours, Composer(), [text for text in line if text.startswith("hydra.")])
-        return len(plan), [dict(plan.composed(cell).resolved) for cell in _few(len(plan))]
+        return len(plan), [dict(plan.composed(cell).resolved) for cell in _few(len(plan), composed)]
     except ConfigError as error:
         return f"runner: {error}"
 
 
-def _of_hydra(line: Sequence[str]) -> Cells | str:
+def _of_hydra(line: Sequence[str], composed: int) -> Cells | str:
     with checked_sources([]), initialize_config_dir(str(conf_dir()), job_name="runner", **VERSION_BASE):
         loader = GlobalHydra.instance().config_loader()
         try:
-            sweeper = loader.load_configuration("config", list(line), RunMode.MULTIRUN, from_shell=False).hydra.sweeper
-            params = [f"{key}={value}" for key, value in (sweeper.params or {}).items()]
+            params: list[str] = []
+            if any(text.startswith(("experiment=", "hydra.")) for text in line):  # only these bring axes
+                config = loader.load_configuration("config", list(line), RunMode.MULTIRUN, from_shell=False)
+                params = [f"{key}={value}" for key, value in (config.hydra.sweeper.params or {}).items()]
             typed = [*params, *(text for text in line if not text.startswith("hydra."))]
             overrides = OverridesParser.create(config_loader=loader).parse_overrides(typed)
             (jobs,) = BasicSweeper.split_arguments(overrides, None)
-            return len(jobs), [_composed(jobs[cell]) for cell in _few(len(jobs))]
+            return len(jobs), [_composed(jobs[cell]) for cell in _few(len(jobs), composed)]
         except Exception as error:  # of Hydra, OmegaConf, the parser, or a crash of the sweeper
             return f"Hydra: {type(error).__name__}: {error}"
 

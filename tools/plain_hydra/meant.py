@@ -35,7 +35,7 @@ MEANT = (
     Meant(("different",), r"(\b[\w.]+)=[^|]*\{.*\|.*\1=", "mappings of one key are merged, as in a single run"),
     Meant(
         ("different", "Hydra refuses", "runner refuses"),
-        r"~([\w.]+)(?![\w.]).*\|.*\b\1|\b([\w.]+)=.*~\2|~noise.*noise|noise.*~noise",
+        r"~([\w.]+)(?![\w.]).*\|.*\b\1|\b([\w]+)[\w.]*=.*~\2|~noise.*noise|noise.*~noise",
         "repeated keys around a deletion act in the order of the line, as in a single run",
     ),
     Meant(

@@ -39,13 +39,6 @@ def test_functions_in_a_file_are_refused_with_their_line(text):
         check_yaml(f"a: 1\n{text}", "own.yaml")
 
 
-def test_ours_alone_may_call_a_function():
-    ours = conf_dir() / "plant" / "default.yaml"
-    check_yaml(ours.read_text(), ours)
-    with pytest.raises(YamlError, match="calls a function"):
-        check_yaml(ours.read_text(), conf_dir().parent / "plant" / "default.yaml")
-
-
 @pytest.mark.parametrize(
     "override",
     [
