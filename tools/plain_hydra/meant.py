@@ -29,7 +29,8 @@ MEANT = (
     Meant(("runner refuses",), r"glob\(q|range\(3,3\)", "a sweep over no value is refused; Hydra makes no run, exit 0"),
     Meant(
         ("different", "Hydra refuses"),
-        r"(\b(?:robot|noise|torque_limits|preset))=.*\1=[^|]*\{|(\b(?:robot|noise|torque_limits|preset))=[^|]*\{.*\2=",
+        r"(\b(?:robot|noise|torque_limits|preset))=.*\1=[^|]*\{|(\b(?:robot|noise|torque_limits|preset))=[^|]*\{.*\2="
+        r"|params=\{noise: '",
         "an option and a mapping of one group both count, as in a single run; Hydra keeps the later one",
     ),
     Meant(("different",), r"(\b[\w.]+)=[^|]*\{.*\|.*\1=", "mappings of one key are merged, as in a single run"),
