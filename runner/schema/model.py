@@ -2,7 +2,6 @@
 
 import math
 from collections.abc import Iterator, Sequence
-from functools import lru_cache
 from typing import get_args
 
 from pydantic import BaseModel, ConfigDict
@@ -37,22 +36,6 @@ class StrictModel(BaseModel):
         """Return the unit of a key below this model; None for an unknown key. See find_field."""
         field = cls.find_field(path)
         return None if field is None else next((each for each in field.metadata if isinstance(each, Unit)), Unit())
-
-
-@lru_cache(maxsize=1024)
-def holds_floats(annotation: object) -> bool:
-    """Return True if the numbers in a field of a model are floats, not integers."""
-    types = set(_types(annotation))
-    return float in types and int not in types
-
-
-def _types(annotation: object) -> Iterator[object]:
-    """Yield the types in an annotation, such as float in `list[PositiveFloat] | None`."""
-    inner = get_args(annotation)
-    if not inner:
-        yield annotation
-    for part in inner[:1] if hasattr(annotation, "__metadata__") else inner:
-        yield from _types(part)
 
 
 def nested_model(annotation: object) -> type[StrictModel] | None:

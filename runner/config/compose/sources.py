@@ -30,8 +30,7 @@ from runner.base.engines import default_plant
 from runner.base.errors import ConfigError
 from runner.base.limits import ExcessError, read_text
 from runner.base.paths import check_inside, conf_dir, ships
-from runner.base.sanitize import quoted
-from runner.config.compose.files import place_in, refuse_settings, settings_error
+from runner.config.compose.files import outside_error, place_in, refuse_settings, settings_error
 from runner.controllers import CONTROLLERS
 
 
@@ -139,8 +138,7 @@ class CheckedSource(ConfigSource):
             ConfigError: for a name that leads out of the folder. Hydra asks every source, and its own would read it.
         """
         if config_path.startswith("/") or ".." in config_path.split("/"):
-            named = f"{quoted(config_path)}: not a config in a folder; a defaults list or an override names it"
-            raise ConfigError(f"{named}; allowed: names without '..' and '/' in front")
+            raise outside_error(config_path)
         return self._file(config_path).is_file() and not self._is_hidden(config_path)
 
     def _is_hidden(self, config_path: str) -> bool:

@@ -3,12 +3,13 @@
 import contextlib
 import re
 from collections.abc import Iterator, Mapping, Sequence
+from functools import lru_cache
 from pathlib import Path
-from typing import Any
+from typing import Annotated, Any, get_args, get_origin
 
 from runner.base.dotted_keys import Place, leaves, put, split_override
 from runner.base.errors import ConfigError
-from runner.schema.model import LARGEST_WHOLE, StrictModel, holds_floats
+from runner.schema.model import LARGEST_WHOLE, StrictModel
 from runner.schema.units import Unit, explain_quantity, read_quantity
 
 _FUNCTION = re.compile(r"\b(interval|range|choice|sort|shuffle)\(([^()]*)\)")
@@ -94,7 +95,23 @@ def _is_float(resolved: Mapping[str, Any], place: Place) -> bool:
     kind = options.get("kind") if rest and isinstance(options, Mapping) else None
     found = [model.find_field(rest or [group]) for model in _models(group if rest else "", rest, kind)]
     types: list[Any] = [field.annotation for field in found if field is not None]
-    return bool(types) and all(map(holds_floats, types))
+    return bool(types) and all(map(_holds_floats, types))
+
+
+@lru_cache(maxsize=1024)
+def _holds_floats(annotation: object) -> bool:
+    """Return True if the numbers in a field of a model are floats, not integers."""
+    types = set(_types(annotation))
+    return float in types and int not in types
+
+
+def _types(annotation: object) -> Iterator[object]:
+    """Yield the types in an annotation, such as float in `list[PositiveFloat] | None`."""
+    inner = get_args(annotation)
+    if not inner:
+        yield annotation
+    for part in inner[:1] if get_origin(annotation) is Annotated else inner:
+        yield from _types(part)
 
 
 def as_numbers(values: Sequence[object], key: str) -> list[float] | None:
