@@ -92,6 +92,8 @@ def _without_zeros(value: Any) -> Any:
     """Return a value with whole floats as integers, as they are typed; see to_si."""
     if isinstance(value, list):
         return [_without_zeros(part) for part in value]
+    if isinstance(value, dict):
+        return {key: _without_zeros(part) for key, part in value.items()}
     return int(value) if isinstance(value, float) and value.is_integer() else value
 
 
