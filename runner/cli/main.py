@@ -199,7 +199,7 @@ def run_line(words: Sequence[str]) -> int:
         print(GUIDE, end="")
     elif first in ("-h", "--help", "help"):
         print(help_text(), end="")
-    elif first == "--version":
+    elif first == "--version" or ("--version" in words and (first not in COMMANDS or first in OVERRIDES)):
         from importlib.metadata import version
 
         print(version("arm-control-runner"))

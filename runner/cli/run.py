@@ -16,7 +16,7 @@ from collections.abc import Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from runner.base.errors import RunnerError
+from runner.base.errors import RunnerError, unknown
 from runner.base.paths import conf_dir
 from runner.base.sanitize import one_line
 from runner.cli.arguments import Parser
@@ -44,6 +44,7 @@ _WITHOUT_OURS = (
     "hydra.output_subdir=null",
 )  # fmt: skip
 _MANY, _OF_SWEEPER = ("-m", "--multirun"), "hydra.sweeper."
+_SHOWN = ("job", "hydra", "all")
 
 
 def add_arguments(parser: Parser) -> None:
@@ -51,14 +52,20 @@ def add_arguments(parser: Parser) -> None:
     parser.add_overrides("such as robot=macro; lists in a sweep, such as seed=0,1")
     parser.add_argument(*_MANY, action="store_true", help="simulate a sweep over every combination")
     _add_own(parser)
-    parser.add_argument("-c", "--cfg", choices=("job", "hydra", "all"), help="print the config, without a simulation")
+    parser.add_argument("-c", "--cfg", choices=_SHOWN, help="print the config, without a simulation")
     parser.add_argument("--hydra-help", action="store_true", help="show all flags of Hydra")
     parser.add_argument("--version", action="store_true", help="show the version")
 
 
 def _add_own(parser: Parser) -> None:
     parser.add_shared(
-        "config_dir", output="outputs folder (default: outputs)", jobs="number of processes of a sweep (default: 2)"
+        "config_dir",
+        output="outputs folder (default: outputs)",
+        jobs="number of processes of a sweep (default: 2)",
+        json="with --dry-run: print all cells as JSON",
+    )
+    parser.add_argument(
+        "--dry-run", action="store_true", help="print the cells and the expected time; simulate and store nothing"
     )
 
 
@@ -71,15 +78,41 @@ def simulate(words: Sequence[str]) -> int:
     """Simulate the run or the sweep of a line; print the folder as the last line."""
     own = Parser(prog="runner run", add_help=False)
     _add_own(own)
-    given, others = own.parse_known_args(words)
+    given, others = own.parse_known_args(_join_flags(words))
     typed = shlex.join(["runner", *words])
+    for shown in (word.partition("=")[2] for word in others if word.partition("=")[0] == "--cfg"):
+        if shown not in _SHOWN:
+            raise RunnerError(unknown("name", shown, _SHOWN, "--cfg"))
+        if any(word in _MANY for word in others):
+            raise RunnerError("--cfg: prints the config of one run. Leave out -m, and give each key one value.")
     if given.output is not None:
         others.append(f"outputs={given.output}")
     if given.jobs is not None:
         if not any(word in _MANY for word in others):
             raise RunnerError("--jobs: one run uses one process. Add -m for a sweep.")
         others.append(f"hydra.sweeper.workers={given.jobs}")
-    return _simulate(others, given.config_dir, typed)
+    if given.json and not given.dry_run:
+        raise RunnerError("--json: prints the cells of a preview. Add --dry-run.")
+    line, overrides = _read_line(others, given.config_dir)
+    if line.overrides is None:
+        return 0  # --cfg, --hydra-help and the like
+    if given.dry_run:
+        return _preview(line, overrides, given.config_dir, given.json)
+    return _simulate(line, overrides, given.config_dir, typed)
+
+
+def _join_flags(words: Sequence[str]) -> list[str]:
+    """Return a line in which Hydra's flags of the config are one word with their value, such as --cfg=job.
+
+    argparse would complete -c to -cd, and read the value of --package as an override.
+    """
+    joined: list[str] = []
+    for word in words:
+        if joined and joined[-1] in ("--cfg", "--package") and not word.startswith("-"):
+            joined[-1] += f"={word}"
+        else:
+            joined.append({"-c": "--cfg", "-p": "--package"}.get(word, word))
+    return joined
 
 
 class _Line:
@@ -108,24 +141,30 @@ class _Line:
         self.overrides, self.root = [*found["task"], *of_sweeper], node.job.config_name
 
 
-def _simulate(words: Sequence[str], config_dirs: Sequence[Path], command: str) -> int:
-    """Simulate the run or the sweep of a line with flags of Hydra; print its folder as the last line."""
-    from runner.config.compose.compose import compose
-    from runner.config.compose.composer import Composer
-
+def _read_line(words: Sequence[str], config_dirs: Sequence[Path]) -> tuple[_Line, list[str]]:
+    """Return a line, and its overrides without the prefix ++."""
     if any(word.startswith("-") and word not in _MANY for word in words):
         line = _read_by_hydra(words, config_dirs)
     else:
         line = _Line([word for word in words if word not in _MANY], any(word in _MANY for word in words))
-    if line.overrides is None:
-        return 0  # --cfg, --hydra-help and the like
-    overrides = [each.removeprefix("++") for each in line.overrides]
+    return line, [each.removeprefix("++") for each in line.overrides or ()]
+
+
+def _split(overrides: Sequence[str]) -> tuple[list[str], list[str]]:
+    """Return the overrides of the config, and those of the sweeper."""
+    ours = [each for each in overrides if not each.startswith(_OF_SWEEPER)]
+    return ours, [each for each in overrides if each.startswith(_OF_SWEEPER)]
+
+
+def _simulate(line: _Line, overrides: Sequence[str], config_dirs: Sequence[Path], command: str) -> int:
+    """Simulate the run or the sweep of a line; print its folder as the last line."""
+    from runner.config.compose.compose import compose
+    from runner.config.compose.composer import Composer
+
     if line.many:
         from runner.sweeps.run import sweep_typed
 
-        composer = Composer(config_dirs, line.root)
-        ours = [each for each in overrides if not each.startswith(_OF_SWEEPER)]
-        return print_sweep(sweep_typed(ours, composer.sweeper(overrides), composer, command))
+        return print_sweep(sweep_typed(*_split(overrides), Composer(config_dirs, line.root), command))
     composed = compose(overrides, config_dirs, line.root)
     from runner.config.validation import validate  # after the composition, so that errors are reported at once
 
@@ -149,6 +188,27 @@ def _idle_in_one_run(composed: "Composed") -> list[str]:
     return found
 
 
+def _preview(line: _Line, overrides: Sequence[str], config_dirs: Sequence[Path], as_json: bool) -> int:
+    """Print what the line would simulate."""
+    from runner.cli.preview import print_preview
+    from runner.config.compose.composer import Composer
+    from runner.sweeps.plan import Grid
+    from runner.sweeps.preview import preview
+    from runner.sweeps.run import Engine
+    from runner.sweeps.typed import plan_typed
+
+    composer = Composer(config_dirs, line.root)
+    ours, of_sweeper = _split(overrides)
+    if line.many:
+        plan, sweeper = plan_typed(ours, composer, of_sweeper)
+        engine = Engine(sweeper.workers, sweeper.address)
+    else:
+        composer.load(overrides)  # rejects several values
+        plan, engine = Grid(ours, composer), Engine(0, None)
+    print_preview(plan, preview(plan, engine), as_json)
+    return 0
+
+
 def _read_by_hydra(words: Sequence[str], config_dirs: Sequence[Path]) -> _Line:
     """Return the overrides of a line with flags of Hydra, read by Hydra's command after a check of the config."""
     from hydra import version
@@ -159,7 +219,7 @@ def _read_by_hydra(words: Sequence[str], config_dirs: Sequence[Path]) -> _Line:
     from runner.config.compose.composer import Composer
     from runner.config.compose.composition_errors import COMPOSITION_ERRORS, explain
     from runner.config.compose.overrides import force
-    from runner.config.compose.sources import checked_sources
+    from runner.config.compose.sources import VERSION_BASE, checked_sources
 
     line = _Line()
     sys.argv = ["runner", *user_overrides(), *force(words), *(_WITHOUT_OURS if "--hydra-help" in words else ())]
@@ -176,7 +236,8 @@ def _read_by_hydra(words: Sequence[str], config_dirs: Sequence[Path]) -> _Line:
             Composer(config_dirs, root).load(given.overrides, mode=mode)  # checks what Hydra does not
         with checked_sources([folder.resolve() for folder in config_dirs]):
             # The absolute path works from a console script and from a wheel, where a relative one does not.
-            version.setbase("1.3")
+            for base in VERSION_BASE.values():
+                version.setbase(base)
             _run_hydra(given, parser, line, config_path=str(conf_dir()), config_name="config")
     except COMPOSITION_ERRORS as error:
         raise explain(error, config_dirs) from None

@@ -14,7 +14,6 @@ from runner.base.errors import ConfigError
 from runner.base.sanitize import quoted
 from runner.config.compose.given_keys import given_keys, references_in
 from runner.config.run import RunConfig
-from runner.config.settings import COMPARED
 from runner.controllers.force.hybrid_force import HybridForceConfig
 from runner.controllers.force.impedance import ImpedanceConfig
 from runner.environments.push import PushConfig

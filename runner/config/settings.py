@@ -7,9 +7,6 @@ from pydantic import Field, NonNegativeFloat, NonNegativeInt, PositiveFloat, Pos
 from runner.schema.model import StrictModel
 from runner.schema.units import Acceleration, Seconds
 
-COMPARED = ("bullet", "mujoco")
-"""Plants whose integration error plant_error estimates."""
-
 
 class RunSettings(StrictModel):
     """The keys at the root of a config.

@@ -12,8 +12,9 @@ from typing import Any
 import numpy as np
 
 from runner.base.trace import Trace
-from runner.config.settings import COMPARED as COMPARED
 
+COMPARED = ("bullet", "mujoco")
+"""Plants whose integration error is estimated."""
 PLANT = "rk4"
 """The plant with which others are compared."""
 PARTED = 4.0

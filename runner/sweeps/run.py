@@ -7,14 +7,12 @@ import shutil
 import sys
 import time
 from collections import Counter
-from collections.abc import Generator, Iterator, Mapping, Sequence
+from collections.abc import Generator, Iterator, Sequence
 from dataclasses import dataclass, field, replace
 from pathlib import Path
-from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
-from omegaconf import DictConfig
 
 from runner import store
 from runner.base import progress
@@ -36,9 +34,10 @@ from runner.sweeps.differing import Resolved
 from runner.sweeps.engine import in_process, local_client, on_cluster, remote_client
 from runner.sweeps.estimate import START_UP, Estimate, Pace, estimate
 from runner.sweeps.outcomes import Ends
-from runner.sweeps.plan import Grid, Plan
+from runner.sweeps.plan import Plan
 from runner.sweeps.queue import Queue
 from runner.sweeps.status import at_work
+from runner.sweeps.typed import plan_typed
 from runner.sweeps.work import Report, find_calibrated
 from runner.sweeps.writer import Rules, TraceKeeping, one_in
 
@@ -89,24 +88,20 @@ class Ended:
     resolved: Resolved = field(compare=False)
 
 
-def sweep_typed(
-    arguments: Sequence[str], sweeper: DictConfig | Mapping[str, Any], source: Composer, command: str
-) -> Ended:
+def sweep_typed(arguments: Sequence[str], of_sweeper: Sequence[str], source: Composer, command: str) -> Ended:
     """Execute the missing runs of a command line.
 
     Args:
         arguments: Overrides as typed, without those of Hydra itself.
-        sweeper: Values of hydra.sweeper: workers, address, and params, the values by key from a file. Values on the
-            command line replace those of params.
+        of_sweeper: Overrides of hydra.sweeper: workers, address and params.
         source: Composer of the configs.
         command: The command line, stored with the sweep.
     """
-    params = [f"{key}={value}" for key, value in (sweeper["params"] or {}).items()]
-    plan = Grid([*params, *arguments], source)
+    plan, sweeper = plan_typed(arguments, source, of_sweeper)
     if len(plan) == 1:
         text = "nothing is swept, and a single run is made: no key has several values, as seed=0,1 has"
         print(f"runner: {text}", file=sys.stderr)
-    ended = run_sweep(plan, Engine(sweeper["workers"], sweeper["address"]), command)
+    ended = run_sweep(plan, Engine(sweeper.workers, sweeper.address), command)
     for line in find_idle_keys(plan):
         print(one_line(f"runner: warning: {line}"), file=sys.stderr)
     return ended
@@ -161,7 +156,7 @@ def make_missing(plan: Plan, checked: Checked, rules: Rules, engine: Engine) -> 
         StoreError: if a result cannot be written, or a worker fails.
     """
     names = checked.names
-    ends = _find_stored(checked, rules)
+    ends = find_stored(checked, rules)
     stored = len(ends)
     left = ends.left[np.argsort(-checked.costs[ends.left], kind="stable")]
     queue = Queue(plan.alike, names, checked.costs, left, rules)
@@ -203,7 +198,7 @@ def make_rules(settings: SweepConfig, folder: Path, runs: int) -> Rules:
     )
 
 
-def _find_stored(checked: Checked, rules: Rules) -> Ends:
+def find_stored(checked: Checked, rules: Rules) -> Ends:
     """Return the outcomes of the jobs that count as done; a run that must keep its trace counts only with its trace."""
     finished = store.Finished(rules.outputs)
     ends = Ends(checked.names)
@@ -289,20 +284,27 @@ def _workers(queue: Queue, jobs: int, engine: Engine, expected: Estimate) -> Ite
             _tell(expected.in_words(processes, processes))
             yield reports
     elif seconds := _seconds_in_process(queue.rules, min(engine.workers, jobs), expected):
-        _tell(expected.in_words(1, 1))
+        _tell(duration_text(queue.rules, jobs, engine, expected))
         with contextlib.closing(_begun_in_process(queue, engine.workers, seconds)) as reports:
             yield reports
     else:
+        _tell(duration_text(queue.rules, jobs, engine, expected))
         workers = min(engine.workers, jobs)
-        together = min(workers, os.cpu_count() or 1)
-        start = START_UP * workers / together
-        _tell(expected.in_words(workers, together, start))
         progress.begin("starting processes")
         with (
             local_client(workers, _scratch(queue.rules)) as client,
             contextlib.closing(on_cluster(queue, client)) as reports,
         ):
             yield reports
+
+
+def duration_text(rules: Rules, jobs: int, engine: Engine, expected: Estimate) -> str:
+    """Return the expected duration of jobs on this machine in words; one process has all jobs of a short sweep."""
+    workers = min(engine.workers, jobs)
+    if _seconds_in_process(rules, workers, expected):
+        return expected.in_words(1, 1)
+    together = min(workers, os.cpu_count() or 1)
+    return expected.in_words(workers, together, START_UP * workers / together)
 
 
 def _seconds_in_process(rules: Rules, workers: int, expected: Estimate) -> float:

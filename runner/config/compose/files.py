@@ -124,6 +124,12 @@ def option_in(folder: Path, group: str, name: str) -> str:
     return f"{own}/{name}" if named else name
 
 
+def outside_error(name: str) -> ConfigError:
+    """Return the error for the name of a config that leads out of its folder."""
+    named = f"{quoted(name)}: not a config in a folder; a defaults list or an override names it"
+    return ConfigError(f"{named}; allowed: names without '..' and '/' in front")
+
+
 KEYS = ("outputs", "hydra.sweeper.workers", "hydra.sweeper.address")
 SAYS_HOW = re.compile(r"(?:^[+~]*|[@:])(?:_global_\.)?(hydra|outputs)(?![^./@:])")
 _AXES = "hydra.sweeper.params"

@@ -19,10 +19,10 @@ OTHERS = {
     "schema/model.py", "schema/units.py", "simulation/provenance.py", "simulation/tick_time.py", "statistics", "store",
     "studies", "study", "sweeps/batch.py", "sweeps/check.py", "sweeps/closed_nodes.py", "sweeps/deadline.py",
     "sweeps/differing.py", "sweeps/engine.py", "sweeps/estimate.py", "sweeps/finer_step.py", "sweeps/gathering.py",
-    "sweeps/job.py", "sweeps/measurements.py", "sweeps/outcomes.py", "sweeps/plan.py", "sweeps/queue.py",
-    "sweeps/rerun.py", "sweeps/rounding.py",
+    "sweeps/job.py", "sweeps/measurements.py", "sweeps/outcomes.py", "sweeps/plan.py", "sweeps/preview.py",
+    "sweeps/queue.py", "sweeps/rerun.py", "sweeps/rounding.py",
     "sweeps/run.py", "sweeps/status.py", "sweeps/swept.py", "sweeps/table.py", "sweeps/template.py", "sweeps/tuning",
-    "sweeps/work.py", "sweeps/writer.py", "symbolic/cache.py",
+    "sweeps/typed.py", "sweeps/work.py", "sweeps/writer.py", "symbolic/cache.py",
 }  # fmt: skip
 TREE = {
     "laws/__init__.py": 'from runner.laws.pd import Law\nKINDS = {"pd": "runner.laws.pd"}\n',
