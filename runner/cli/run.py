@@ -20,7 +20,7 @@ from runner.base.errors import RunnerError
 from runner.base.paths import conf_dir
 from runner.base.sanitize import one_line
 from runner.cli.arguments import Parser
-from runner.config.compose.files import outputs_dir, user_overrides
+from runner.config.compose.files import outputs_dir, outputs_override, user_overrides
 from runner.reporting.table import Table, numbers, terminal
 from runner.store.kinds import WORD
 
@@ -72,7 +72,7 @@ def simulate(words: Sequence[str]) -> int:
     given, others = own.parse_known_args(words)
     typed = shlex.join(["runner", *words])
     if given.output is not None:
-        others.append(f"outputs={given.output}")
+        others.append(outputs_override(given.output))
     if given.jobs is not None:
         if not any(word in _MANY for word in others):
             raise RunnerError("--jobs: one run uses one process. Add -m for a sweep.")

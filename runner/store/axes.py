@@ -13,7 +13,7 @@ from runner.base.arrays import FloatArray
 from runner.base.dotted_keys import split_override
 from runner.base.errors import RunnerError, StoreError, unknown
 
-_PLAIN = re.compile(r"[\w./+-]+|\$\{[\w.]+\}")
+_PLAIN = re.compile(r"[\w./+-]+|\$\{[\w.]+\}", re.ASCII)
 _OTHER_KIND = re.compile(r"(?i)null|true|false|[+-]?(inf|nan|[\d._]+(e[+-]?[\d_]+)?)")
 _LISTED_UP_TO = 1000  # values of a range; a short range and the same numbers in a list are then the same sweep
 
