@@ -21,7 +21,7 @@ from runner.base.errors import ConfigError, StoreError
 from runner.config.compose.composer import Composer
 from runner.config.limits import SweepConfig, check_cpu_time, check_memory_together
 from runner.plugins.discovery import has_users_parts, in_use
-from runner.store.atomic import remove_leftovers
+from runner.store.atomic import refuse_links, remove_leftovers
 from runner.store.finished import FINER
 from runner.store.kinds import note
 from runner.store.names import Names
@@ -37,6 +37,7 @@ from runner.sweeps.work import Report, find_calibrated
 from runner.sweeps.writer import Rules, TraceKeeping, one_in
 
 _DAMAGE_SHOWN = 10
+_SCRATCH = "scratch"  # folder in that of a sweep, for temporary files of its processes
 _ALL_TRACES_UP_TO = 3000  # runs; with more, sweep.trace=auto is sample
 
 
@@ -170,6 +171,8 @@ def _write_sweep(plan: Plan, checked: Checked, command: str) -> Path:
 def make_rules(settings: SweepConfig, folder: Path, runs: int) -> Rules:
     """Return the rules for a number of runs of a sweep in a folder."""
     automatic: TraceKeeping = "all" if runs <= _ALL_TRACES_UP_TO else "sample"
+    for name in (_SCRATCH, "logs"):
+        refuse_links(folder.parent.parent, folder / name)
     folder = folder.resolve()
     return Rules(
         plugins=in_use(),
@@ -311,7 +314,7 @@ def _tell(text: str) -> None:
 
 
 def _scratch(rules: Rules) -> Path:
-    return rules.sweep / "scratch"
+    return rules.sweep / _SCRATCH
 
 
 def clean(rules: Rules, names: Sequence[str]) -> None:
