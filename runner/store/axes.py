@@ -4,6 +4,7 @@ import math
 import re
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
+from functools import cached_property
 from typing import Any
 
 import numpy as np
@@ -179,7 +180,7 @@ class Axis:
     values: Sequence[float] | Sequence[str]
     level: NDArray[np.intp]
 
-    @property
+    @cached_property
     def numbers(self) -> FloatArray | None:
         """Values of the axis as numbers, shape (levels,); None for strings."""
         texts = len(self.values) > 0 and isinstance(self.values[0], str)
