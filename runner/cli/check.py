@@ -58,6 +58,9 @@ def run(options: argparse.Namespace) -> int:
     from runner.sweeps.rounding import Sensitivity, find_sensitive
 
     if options.save_baseline:
+        if options.baseline or options.max_failure_probability is not None or options.format:
+            others = "--baseline, --max-failure-probability or --format"
+            options.parser.error(f"--save-baseline compares nothing: not with {others}")
         path, sweep = options.save_baseline, store.open_sweep(options.folder)
         before = load_baseline(path) if path.exists() else None
         bands = before if isinstance(before, Bands) else None

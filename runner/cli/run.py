@@ -20,7 +20,7 @@ from runner.base.errors import RunnerError, unknown
 from runner.base.paths import conf_dir
 from runner.base.sanitize import one_line
 from runner.cli.arguments import Parser
-from runner.config.compose.files import outputs_dir, user_overrides
+from runner.config.compose.files import outputs_dir, outputs_override, user_overrides
 from runner.reporting.table import Table, numbers, terminal
 from runner.store.kinds import WORD
 
@@ -49,7 +49,7 @@ _SHOWN = ("job", "hydra", "all")
 
 def add_arguments(parser: Parser) -> None:
     """Add the arguments, for help and completion; `simulate` takes the words as they are typed."""
-    parser.add_overrides("such as robot=macro; lists in a sweep, such as seed=0,1")
+    parser.add_overrides("such as robot=macro, or seed=0,1 in a sweep")
     parser.add_argument(*_MANY, action="store_true", help="simulate a sweep over every combination")
     _add_own(parser)
     parser.add_argument("-c", "--cfg", choices=_SHOWN, help="print the config, without a simulation")
@@ -64,9 +64,7 @@ def _add_own(parser: Parser) -> None:
         jobs="number of processes of a sweep (default: 2)",
         json="with --dry-run: print all cells as JSON",
     )
-    parser.add_argument(
-        "--dry-run", action="store_true", help="print the cells and the expected time; simulate and store nothing"
-    )
+    parser.add_argument("--dry-run", action="store_true", help="print cells and expected time; simulate nothing")
 
 
 def run(arguments: Namespace) -> int:
@@ -86,7 +84,7 @@ def simulate(words: Sequence[str]) -> int:
         if any(word in _MANY for word in others):
             raise RunnerError("--cfg: prints the config of one run. Leave out -m, and give each key one value.")
     if given.output is not None:
-        others.append(f"outputs={given.output}")
+        others.append(outputs_override(given.output))
     if given.jobs is not None:
         if not any(word in _MANY for word in others):
             raise RunnerError("--jobs: one run uses one process. Add -m for a sweep.")

@@ -6,6 +6,7 @@ import shlex
 import subprocess
 from collections.abc import Mapping, Sequence
 from functools import cache, lru_cache
+from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from runner.base.engines import STAND_IN, installed_versions
@@ -87,22 +88,32 @@ _quoted = lru_cache(4096)(shlex.quote)
 
 @cache
 def commit() -> str | None:
-    """Return the checkout's commit, with "+changes" when files differ from it; None outside a checkout."""
-    folder = package_dir().parent
+    """Return the checkout's commit, with "+changes" when files differ from it.
+
+    Returns:
+        None without a checkout of this package. Another repository that contains an installed copy, or that variables
+        such as GIT_DIR name, says nothing about the package.
+    """
+    package = package_dir()
     try:
-        head = subprocess.run(
-            ["git", "-C", str(folder), "rev-parse", "HEAD"], capture_output=True, text=True, check=True, timeout=10
-        ).stdout.strip()
-        changes = subprocess.run(
-            ["git", "-C", str(folder), "status", "--porcelain", "--untracked-files=no"],
-            capture_output=True,
-            text=True,
-            check=True,
-            timeout=10,
-        ).stdout.strip()
+        of_package = f"{package.name}/__init__.py"
+        if _git(package, "ls-files", "--full-name", "__init__.py") != of_package:
+            return None
+        head, changes = _git(package, "rev-parse", "HEAD"), _git(package, "status", "--porcelain", "-uno")
     except (OSError, subprocess.SubprocessError):
         return None
     return head + ("+changes" if changes else "")
+
+
+def _git(folder: Path, *words: str) -> str:
+    return subprocess.run(
+        ["git", "-C", str(folder), *words],
+        env={name: value for name, value in os.environ.items() if not name.startswith("GIT_")},
+        capture_output=True,
+        text=True,
+        check=True,
+        timeout=10,
+    ).stdout.strip()
 
 
 @cache

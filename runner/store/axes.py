@@ -4,6 +4,7 @@ import math
 import re
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
+from functools import cached_property
 from typing import Any
 
 import numpy as np
@@ -13,7 +14,7 @@ from runner.base.arrays import FloatArray
 from runner.base.dotted_keys import split_override
 from runner.base.errors import RunnerError, StoreError, unknown
 
-_PLAIN = re.compile(r"[\w./+-]+|\$\{[\w.]+\}")
+_PLAIN = re.compile(r"[\w./+-]+|\$\{[\w.]+\}", re.ASCII)
 _OTHER_KIND = re.compile(r"(?i)null|true|false|[+-]?(inf|nan|[\d._]+(e[+-]?[\d_]+)?)")
 _LISTED_UP_TO = 1000  # values of a range; a short range and the same numbers in a list are then the same sweep
 
@@ -179,7 +180,7 @@ class Axis:
     values: Sequence[float] | Sequence[str]
     level: NDArray[np.intp]
 
-    @property
+    @cached_property
     def numbers(self) -> FloatArray | None:
         """Values of the axis as numbers, shape (levels,); None for strings."""
         texts = len(self.values) > 0 and isinstance(self.values[0], str)

@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 
 from runner.base.arrays import FloatArray
 from runner.base.errors import StoreError
-from runner.store.atomic import write_atomically
+from runner.store.atomic import refuse_links, write_atomically
 from runner.store.names import Names, best_of_each, look_up
 from runner.store.run import Run, open_run
 from runner.store.seal import DamagedError, check_job, read_json, sealed_json
@@ -154,6 +154,7 @@ def write_finer(outputs: Path, name: str, reason: str, metrics: Mapping[str, Flo
         StoreError: if it cannot be written.
     """
     values = {key: [float(one) if np.isfinite(one) else None for one in row] for key, row in metrics.items()}
+    refuse_links(outputs, outputs / FINER)
     write_atomically(outputs / FINER / f"{name}.json", sealed_json({"reason": reason, "metrics": values}))
 
 

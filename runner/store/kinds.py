@@ -60,7 +60,7 @@ def note(folder: Path) -> None:
 
     An outputs folder that cannot be written to causes a message, not an error.
     """
-    from runner.store.atomic import write_atomically  # not needed to read a note
+    from runner.store.atomic import refuse_links, write_atomically  # not needed to read a note
 
     place = folder.resolve()
     outputs, kind = place.parent.parent, place.parent.name
@@ -69,6 +69,7 @@ def note(folder: Path) -> None:
     order = max([time.time_ns(), *(known + 1 for known, _ in _notes(outputs, tuple(KINDS)))])
     try:
         content = json.dumps({"name": place.name, "order": order}).encode()
+        refuse_links(outputs, outputs / _NOTES)
         write_atomically(outputs / _NOTES / f"{kind}.json", content, flush=False)
     except StoreError as error:
         print(f"runner: `{WORD}` will not mean {folder}: {error}", file=sys.stderr)
@@ -107,6 +108,19 @@ def outputs_of(folder: Path) -> Path:
     """Return the outputs folder of a stored result; ./outputs for a copy elsewhere."""
     stored = any(of.folder == folder.resolve().parent.name for of in KINDS.values())
     return folder.parent.parent if stored else outputs_dir()
+
+
+def report_place(outputs: Path, name: str) -> Path:
+    """Return the folder of a report in an outputs folder, to write to.
+
+    Raises:
+        StoreError: if it is a link, or lies in one.
+    """
+    from runner.store.atomic import refuse_links  # not needed to find a result
+
+    folder = outputs / KINDS["report"].folder / name
+    refuse_links(outputs, folder)
+    return folder
 
 
 def open_stored(folder: Path) -> "Run | Sweep | Calibration":

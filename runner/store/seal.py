@@ -20,7 +20,7 @@ from runner.base.bounded_yaml import STORED, YamlError, read_yaml
 from runner.base.cache import Memory
 from runner.base.errors import StoreError
 from runner.base.limits import RECORD, RECORD_VALUES, ExcessError
-from runner.store.atomic import write_atomically
+from runner.store.atomic import refuse_links, write_atomically
 
 SCHEMA = 3
 """Schema of every stored file; files of another schema are rejected."""
@@ -276,6 +276,7 @@ def write_job(
     Raises:
         StoreError: if a file cannot be written.
     """
+    refuse_links(folder.parent.parent, folder)
     for name, content in files.items():
         write_atomically(folder / name, content, flush=name in flushed)
     digests = {name: digest(content) for name, content in files.items()}

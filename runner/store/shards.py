@@ -26,7 +26,7 @@ from runner.base.machine import Machine, read_machine
 from runner.store.atomic import write_atomically
 from runner.store.names import Names, Texts
 from runner.store.parquet import encode_parquet, list_column, numbers, plain_column, text_column
-from runner.store.record import find_faults
+from runner.store.record import find_config_faults, find_faults
 from runner.store.run import Run
 from runner.store.seal import SCHEMA, DamagedError, SchemaError, digest, encode_finite
 
@@ -226,7 +226,7 @@ def open_row(path: Path, row: int) -> Run:
         config, record, names = (decode_json(values[column][row].as_py()) for column in ("config", "record", "metrics"))
         if "metrics" not in record:
             record["metrics"] = _summarize(_read_once(path, (), METRIC), row, names)
-        fault = find_faults(record)
+        fault = find_faults(record) or find_config_faults(config)
     except (KeyError, ValueError, TypeError) as error:
         fault = str(error)
     if fault:

@@ -25,7 +25,7 @@ from runner.config.dependent_keys import depends, idle_keys
 from runner.config.limits import SweepConfig, check_cpu_time, check_memory_together
 from runner.config.validation import validate
 from runner.plugins.discovery import has_users_parts, in_use
-from runner.store.atomic import remove_leftovers
+from runner.store.atomic import refuse_links, remove_leftovers
 from runner.store.finished import FINER
 from runner.store.kinds import note
 from runner.store.names import Names
@@ -43,6 +43,7 @@ from runner.sweeps.writer import Rules, TraceKeeping, one_in
 
 _DAMAGE_SHOWN = 10
 _LOOKED_AT = 100  # cells
+_SCRATCH = "scratch"  # folder in that of a sweep, for temporary files of its processes
 _ALL_TRACES_UP_TO = 3000  # runs; with more, sweep.trace=auto is sample
 
 
@@ -186,6 +187,8 @@ def _write_sweep(plan: Plan, checked: Checked, command: str) -> Path:
 def make_rules(settings: SweepConfig, folder: Path, runs: int) -> Rules:
     """Return the rules for a number of runs of a sweep in a folder."""
     automatic: TraceKeeping = "all" if runs <= _ALL_TRACES_UP_TO else "sample"
+    for name in (_SCRATCH, "logs"):
+        refuse_links(folder.parent.parent, folder / name)
     folder = folder.resolve()
     return Rules(
         plugins=in_use(),
@@ -334,7 +337,7 @@ def _tell(text: str) -> None:
 
 
 def _scratch(rules: Rules) -> Path:
-    return rules.sweep / "scratch"
+    return rules.sweep / _SCRATCH
 
 
 def clean(rules: Rules, names: Sequence[str]) -> None:

@@ -171,7 +171,21 @@ def user_overrides() -> list[str]:
     Raises:
         ConfigError: with file and line, for a file that cannot be read, an unknown key or an invalid value.
     """
-    return [f"{key}={value}" for key, value in _read(settings_path()).items()]
+    given = _read(settings_path())
+    return [outputs_override(value) if key == "outputs" else f"{key}={value}" for key, value in given.items()]
+
+
+def outputs_override(folder: Path | str) -> str:
+    """Return the override that names an outputs folder; it is quoted, because a name may contain any sign.
+
+    Raises:
+        ConfigError: for a name with `${`, which begins a reference.
+    """
+    from hydra.core.override_parser.types import Quote, QuotedString
+
+    if "${" in str(folder):
+        raise ConfigError(f"outputs: '${{' begins a reference ({quoted(str(folder))}). Choose a name without it")
+    return f"outputs={QuotedString(str(folder), Quote.single).with_quotes()}"
 
 
 def outputs_dir() -> Path:

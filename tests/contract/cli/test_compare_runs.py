@@ -42,7 +42,7 @@ def test_config_keys_and_metrics_that_differ(cli, copy_run):
     b = cli(*SHORT, "trajectory=quintic", "noise=thesis", *changes).folder
     out = cli("compare", a, b, "--all").out
     head, table = out.split("config differs:")[1].split("same provenance")
-    assert cells(head, "trajectory.duration") == ["1", "0.4"]
+    assert cells(head, "trajectory.duration") == ["1.0", "0.4"]
     assert cells(head, "torque_limits.max") == ["null", "[50,", "50,", "20]"]
     assert cells(head, "plant.kind") == [ASKED.removeprefix("plant="), "rk4"]
     assert cells(head, "plant.step") == ["null", "0.001"]

@@ -16,7 +16,6 @@ IDLE = [
     (IDEAL, "mismatch.centre_of_mass=0.9", "plant=kinematic"),
     (IDEAL, "mismatch=sampled", "plant=kinematic"),
     (IDEAL, "noise.velocity=low_pass", "controller=differential_inverse_kinematics"),
-    ((*ARM, "plant=rk4"), "plant_error=true", "plant=rk4"),
     (ARM, "endpoint_sensor.noise=1e-3", "endpoint_sensor.read_by"),
     ((*ARM, "endpoint_sensor.read_by=[macro]"), "endpoint_sensor.velocity_bandwidth=99", "endpoint_sensor.velocity"),
     (ARM, "joint_torque_sensor=ideal", "disturbance_observer.torque"),
@@ -85,7 +84,7 @@ def test_an_ordinary_run_says_nothing_new(checked_config):
         )
 
 
-FRICTION = ["viscous=20", "coulomb=2", "static=[1,1,1]", "sigmoid.level=3"]
+FRICTION = ["viscous=20.5", "coulomb=2.5", "static=[1.5,1.5,1.5]", "sigmoid.level=3.5"]
 LINKS = ("robot=macro", "plant=rk4_flexible_links", "trajectory=quintic")
 KINEMATIC = ("robot=macro", "controller=differential_inverse_kinematics", "plant=kinematic")
 
@@ -98,8 +97,10 @@ def test_friction_of_a_plant_without_it_is_rejected(cli, run, key):
     name, value = key.split("=")
     assert ending.code == 2
     plant = run[1] if "plant" in run[1] else run[2]
-    told = f"robot.friction.{name}: {value.replace(',', ', ')} found, and {plant} has no joint friction. Take a plant"
-    assert told in ending.err, ending.err
+    expected = (
+        f"robot.friction.{name}: {value.replace(',', ', ')} found, and {plant} has no joint friction. Take a plant"
+    )
+    assert expected in ending.err, ending.err
 
 
 def test_no_friction_contradicts_no_plant(checked_config):

@@ -34,6 +34,7 @@ SHARED = {
     "calibration/procedure": "physics/calibration/test_procedures.py",
     "calibration/weighing": "physics/calibration/test_procedures.py",
     "config/composed": "contract/config/test_compose.py",
+    "config/compose/given_keys": "contract/config/test_dependent_keys.py",
     "config/calibration": "contract/calibration/test_calibration_job.py",
     "config/compose/files": "contract/config/test_options.py",
     "config/compose/composition_errors": "contract/config/test_compose.py",

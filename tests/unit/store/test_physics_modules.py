@@ -11,7 +11,7 @@ OTHERS = {
     "base/bounded_yaml.py", "base/cache.py", "base/data_file.py", "base/dotted_keys.py", "base/engine_output.py",
     "base/engines.py", "base/errors.py", "base/expressions", "base/former_names.py", "base/lazy_modules.py",
     "base/limits.py", "base/machine.py", "base/paths.py", "base/progress.py", "base/quantities.py", "base/sanitize.py",
-    "base/ticks.py", "cli", "config/compose", "config/composed.py", "config/json_schema.py", "config/judgement.py",
+    "base/ticks.py", "cli", "config/compose", "config/composed.py", "config/dependent_keys.py", "config/json_schema.py", "config/judgement.py",
     "config/limits.py",
     "controllers/stability.py", "doctor",
     "metrics/caveats",
