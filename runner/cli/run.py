@@ -1,7 +1,7 @@
 """Simulate one run, or every combination of the listed values.
 
 An override sets a key or chooses from a group, as controller.period=5ms or robot=macro. A line without a command is a
-run. `runner sweep` is the same as `runner -m`. All other flags are Hydra's.
+run. `runner sweep` is the same as `runner -m`.
 
 Example: runner sweep robot=macro trajectory=quintic controller=computed_torque,joint_pd seed=0,1
 """

@@ -81,12 +81,12 @@ class _Arm(_Part):
 
 
 class _Config(_Part):
-    seed: int
-    repetitions: int
-    robot: _Arm
-    controller: dict[str, Any]
-    trajectory: dict[str, Any]
-    plant: dict[str, Any]
+    seed: int = 0
+    repetitions: int = 1
+    robot: _Arm = _Arm()
+    controller: dict[str, Any] = {}
+    trajectory: dict[str, Any] = {}
+    plant: dict[str, Any] = {}
 
 
 class _Record(_Part):

@@ -36,13 +36,13 @@ def test_without_a_compiler_the_table_says_what_it_lacks(monkeypatch):
 
 
 @pytest.mark.parametrize(
-    ("words", "told"),
+    ("words", "expected"),
     [
         (("none",), "NAME: unknown benchmark (none). Allowed: tick, laws, "),
         (("tick", "--rounds", "0"), "--rounds: too few (0). Allowed: 1 or more."),
     ],
 )
-def test_wrong_words_are_refused(words, told):
+def test_wrong_words_are_refused(words, expected):
     ending = run("bench", *words)
     assert (ending.returncode, ending.stdout) == (2, "")
-    assert told in ending.stderr
+    assert expected in ending.stderr

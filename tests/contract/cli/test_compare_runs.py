@@ -38,12 +38,12 @@ def test_a_run_and_itself(cli, copy_run):
 
 def test_config_keys_and_metrics_that_differ(cli, copy_run):
     a = copy_run("quintic")
-    changes = ("trajectory.duration=0.4", "torque_limits.max=[50,50,20]", "plant=rk4", "plant.step=0.001")
+    changes = ("trajectory.duration=0.4", "torque_limits.max=[50.5,50.5,20.5]", "plant=rk4", "plant.step=0.001")
     b = cli(*SHORT, "trajectory=quintic", "noise=thesis", *changes).folder
     out = cli("compare", a, b, "--all").out
     head, table = out.split("config differs:")[1].split("same provenance")
     assert cells(head, "trajectory.duration") == ["1.0", "0.4"]
-    assert cells(head, "torque_limits.max") == ["null", "[50,", "50,", "20]"]
+    assert cells(head, "torque_limits.max") == ["null", "[50.5,", "50.5,", "20.5]"]
     assert cells(head, "plant.kind") == [ASKED.removeprefix("plant="), "rk4"]
     assert cells(head, "plant.step") == ["null", "0.001"]
     assert "outputs" not in head

@@ -70,7 +70,7 @@ def test_an_older_sweep_that_stays_keeps_its_runs_and_stops_no_removal(cli, copy
 
 
 @pytest.mark.parametrize(
-    ("place", "value", "told"),
+    ("place", "value", "expected"),
     [
         (("robot", "home"), [0, "x", 0], "robot.home.1: "),
         (("robot", "home"), -1, "robot.home: "),
@@ -80,7 +80,7 @@ def test_an_older_sweep_that_stays_keeps_its_runs_and_stops_no_removal(cli, copy
         (("seed",), "x", "seed: "),
     ],
 )
-def test_a_config_that_fits_no_run_is_a_row_and_one_sentence(cli, copy_sweep, place, value, told):
+def test_a_config_that_fits_no_run_is_a_row_and_one_sentence(cli, copy_sweep, place, value, expected):
     sweep = copy_sweep("goal", "other seed")
     runs = sorted((sweep.parents[1] / "runs").iterdir())
     forge(runs[0], place, value)
@@ -91,7 +91,7 @@ def test_a_config_that_fits_no_run_is_a_row_and_one_sentence(cli, copy_sweep, pl
     for words in (("table", runs[0]), ("compare", *runs)):
         ending = cli(*words)
         assert (ending.code, ending.out) == (2, "")
-        assert f"config.yaml: it is no run's config: {told}" in ending.err
+        assert f"config.yaml: it is no run's config: {expected}" in ending.err
         assert len(ending.err.splitlines()) == 1
 
 

@@ -1,4 +1,4 @@
-"""Keys that depend on another key: rejected where they contradict the run, told where they have no effect."""
+"""Keys that depend on another key: rejected where they contradict the run, named where they have no effect."""
 
 import pytest
 from support import strangers
