@@ -100,7 +100,8 @@ def compare(trace: Trace, metrics: Metrics, other: Trace, others: Metrics, band:
         step: Step of the Runge-Kutta plant, in s.
     """
     rows = min(len(trace.t), len(other.t))
-    distance = np.linalg.norm(trace.tip[:rows] - other.tip[:rows], axis=1)
+    with np.errstate(over="ignore", invalid="ignore"):  # of two runs that diverge
+        distance = np.linalg.norm(trace.tip[:rows] - other.tip[:rows], axis=1)
     parted = _parting(trace, other, distance, band)
     finite = np.flatnonzero(np.isfinite(distance))  # the last positions of a diverging run can be infinite or NaN
     farthest = finite[distance[finite].argmax()]

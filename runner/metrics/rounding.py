@@ -71,7 +71,8 @@ def compare(trace: Trace, metrics: Metrics, other: Trace, others: Metrics) -> Ro
         others: Metrics from the moved start; empty if that run failed.
     """
     rows = min(len(trace.t), len(other.t))
-    difference = np.abs(trace.q[:rows] - other.q[:rows]).max(axis=1)
+    with np.errstate(over="ignore", invalid="ignore"):  # of two runs that diverge
+        difference = np.abs(trace.q[:rows] - other.q[:rows]).max(axis=1)
     finite = np.flatnonzero(np.isfinite(difference))  # the last positions of a diverging run can be infinite or NaN
     farthest = finite[difference[finite].argmax()]
     first, second = (None if each.failure is None else each.failure.time for each in (trace, other))
