@@ -102,7 +102,8 @@ def _lines(name: str, value: Any, depth: int) -> Iterator[str]:
             for field in (each for each in fields(value) if each.name not in _OF_TODAY):
                 yield from _lines(field.name, getattr(value, field.name), below)
         case _:
-            yield _HASH.sub("...", f"{head} {_PRINTED.sub(_printed, str(value))}".replace("\n", " "))
+            text = _PRINTED.sub(_printed, str(value)).replace("0 (rounding)", "0")
+            yield _HASH.sub("...", f"{head} {text}".replace("\n", " "))
 
 
 def _paths(svg: str) -> Iterator[str]:

@@ -44,12 +44,15 @@ def test_a_drawing_has_a_line_for_each_text_and_for_each_path_that_is_no_letter(
 
 
 def test_numbers_of_the_size_of_rounding_are_kept_as_zero_but_for_bounds():
-    assert lines([1.3e-12, -2e-9, 1.2e-5, "off by 1.73·10⁻¹⁰ m, less than 1·10⁻¹² m", "error < 1·10⁻⁹"])[1:] == [
+    assert lines(
+        [1.3e-12, -2e-9, 1.2e-5, "off by 1.73·10⁻¹⁰ m, less than 1·10⁻¹² m", "error < 1·10⁻⁹", "0 (rounding)"]
+    )[1:] == [
         "  -: 0",
         "  -: 0",
         "  -: 1.2e-05",
         "  -: off by 0 m, 0 m",
         "  -: error < 1·10⁻⁹",
+        "  -: 0",
     ]
 
 
