@@ -15,10 +15,11 @@ from dataclasses import asdict, dataclass, fields
 from functools import cache
 from pathlib import Path
 
+from runner.base import quantities
+
 ROUNDING = 1e-6
 """Relative difference up to which two values of a metric are equal up to rounding."""
 
-_SMALLEST = 1e-12  # absolute difference up to which they are; in the unit of the metric
 _LEVELS: Mapping[str, frozenset[str]] = {  # flags of /proc/cpuinfo that each level of the x86-64 psABI adds
     "x86-64-v2": frozenset(["cx16", "lahf_lm", "popcnt", "sse4_1", "sse4_2", "ssse3"]),
     "x86-64-v3": frozenset(["abm", "avx", "avx2", "bmi1", "bmi2", "f16c", "fma", "movbe", "xsave"]),
@@ -105,7 +106,7 @@ def describe_mixture(counts: Mapping[Machine, int]) -> str:
 
 def equal_up_to_rounding(a: float | None, b: float | None) -> bool:
     """Return True if two values of a metric differ by no more than rounding; None is no value."""
-    return a == b if a is None or b is None else math.isclose(a, b, rel_tol=ROUNDING, abs_tol=_SMALLEST)
+    return a == b if a is None or b is None else math.isclose(a, b, rel_tol=ROUNDING, abs_tol=quantities.ROUNDING)
 
 
 def _processor() -> tuple[str, str]:
