@@ -142,7 +142,8 @@ def fetch(root: Path, venv: Path) -> None:
     """Install the pinned packages and then the checkout itself, by uv, or by pip where uv cannot be had.
 
     Every file that is fetched must have a digest that constraints.txt lists. What comes as source, and the checkout, is
-    built by packages that were installed before.
+    built by packages that were installed before. Where Python does not write bytecode, it is written here: else
+    each process would compile every module that it imports.
     """
     python = str(venv / "bin" / "python")
     install = [python, "-m", "pip", "install", "--quiet", "--disable-pip-version-check", "--retries", "1"]
@@ -155,8 +156,11 @@ def fetch(root: Path, venv: Path) -> None:
     else:
         install = [str(venv / "bin" / "uv"), "pip", "install", "--quiet", "--system-certs", "--python", python]
         install += [] if can_cache() else ["--no-cache"]
+        install += ["--compile-bytecode"] if os.environ.get("PYTHONDONTWRITEBYTECODE") else []
     run([*install, *HASHED, "constraints.txt"], root)
     run([*install, "--no-deps", "--no-build-isolation", "--editable", "."], root)
+    if os.environ.get("PYTHONDONTWRITEBYTECODE"):
+        run([python, "-m", "compileall", "-q", "runner", "hydra_plugins"], root)
 
 
 def pinned(root: Path, venv: Path, name: str) -> str:

@@ -50,7 +50,8 @@ def checkout(tmp_path):
 
 @pytest.fixture
 def commands(install, monkeypatch):
-    """The commands that would have been run."""
+    """The commands that would have been run, where Python writes bytecode."""
+    monkeypatch.delenv("PYTHONDONTWRITEBYTECODE", raising=False)
     given = []
     monkeypatch.setattr(install, "run", lambda command, root: given.append(command[1:]))
     return given
@@ -94,6 +95,7 @@ def test_every_package_needs_a_known_digest_and_the_checkout_brings_none(install
 
 def test_without_uv_pip_installs_the_same(install, checkout, monkeypatch):
     given = []
+    monkeypatch.delenv("PYTHONDONTWRITEBYTECODE", raising=False)
 
     def run(command, root):
         given.append(command[1:])
@@ -109,6 +111,15 @@ def test_pins_without_what_builds_are_refused(install, checkout, commands):
     (checkout / "constraints.txt").write_text("uv==0.13\n")
     with pytest.raises(install.InstallError, match="pins no setuptools; `make pins` writes it anew"):
         install.install(checkout, any_version=True)
+
+
+def test_bytecode_is_written_where_python_writes_none(install, checkout, commands, monkeypatch):
+    monkeypatch.setenv("PYTHONDONTWRITEBYTECODE", "1")
+    install.install(checkout, any_version=True)
+    *_, packages, own, compiled = commands
+    assert "--compile-bytecode" in packages
+    assert "--compile-bytecode" in own
+    assert compiled == ["-m", "compileall", "-q", "runner", "hydra_plugins"]
 
 
 def test_every_pin_has_a_digest():
