@@ -1,5 +1,6 @@
 """Runs of a chunk that are simulated together: their choice, and the same outcomes as single runs."""
 
+import itertools
 from types import SimpleNamespace
 
 import numpy as np
@@ -63,7 +64,9 @@ def alone(chunk, outputs):
 
 
 @pytest.mark.costs(2)
-def test_a_sweep_makes_its_runs_together(sweep, batches, simulated_runs):
+def test_a_sweep_makes_its_runs_together(sweep, batches, simulated_runs, monkeypatch):
+    ticks = itertools.count(0.0, 0.001)
+    monkeypatch.setattr(work, "time", SimpleNamespace(perf_counter=lambda: next(ticks)))
     given = [*SHORT, "seed=range(0,30)", "controller.natural_frequency=8,10", "sweep.trace=never"]
     ended = sweep(*given)
     made = [size for size in batches if size > 1]

@@ -4,6 +4,7 @@ import contextlib
 from types import SimpleNamespace
 
 import pytest
+from support.engines import ASKED
 from support.grids import plan_sweep
 
 from runner.config.compose.compose import compose
@@ -57,6 +58,7 @@ def test_workers_start_only_where_they_pay_or_protect(tmp_path, monkeypatch, sec
     monkeypatch.setattr(run, "on_cluster", lambda queue, _: in_process(queue))
     monkeypatch.setattr(run, "estimate", lambda *_: Estimate(seconds, known))
     monkeypatch.setattr(run.os, "cpu_count", lambda: 2)
+    monkeypatch.setattr(run, "time", SimpleNamespace(monotonic=lambda: 0.0))
     plan = plan_sweep([*SHORT, "plant=rk4", f"outputs={tmp_path}", "seed=0,1", *overrides])
     assert len(run_sweep(plan, Engine(2, None), "runner -m ...").ends) == 2
     assert workers == started
@@ -69,7 +71,7 @@ def test_workers_take_the_rest_of_what_takes_longer_than_expected(tmp_path, monk
     monkeypatch.setattr(run, "estimate", lambda *_: Estimate(0.1))
     monkeypatch.setattr(run.os, "cpu_count", lambda: 2)
     monkeypatch.setattr(run, "time", SimpleNamespace(monotonic=clock))
-    plan = plan_sweep([*SHORT, f"outputs={tmp_path}", "plant=bullet", "controller.period=0.005,0.01,0.02,0.025,0.05"])
+    plan = plan_sweep([*SHORT, f"outputs={tmp_path}", ASKED, "controller.period=0.005,0.01,0.02,0.025,0.05"])
     ended = run_sweep(plan, Engine(4, None), "runner -m ...")
     assert len(ended.ends) == 5
     assert 0 < workers[0] < 5
