@@ -43,6 +43,7 @@ MEANT = (
     Meant(r"range\(0\.1,0\.4,0\.1\)", _DECIMAL, "0.1,0.2,0.3"),
     Meant(r"range\(0,0\.3,0\.1\)", _DECIMAL, "0.0,0.1,0.2"),
     Meant(r"range\(0\.3,0,-0\.1\)", _DECIMAL, "0.3,0.2,0.1"),
+    Meant(r"sort\(range\(5,0,-2\)\)", "a sorted range has the values of the range; Hydra adds one", "1,3,5"),
     Meant(r"range\(0,2\.5\)", "integers stay integers if only the stop is a float", "0,1,2"),
     Meant(r"\bstr\((\w+|\[1,2\])\)", _STRINGS, r"'\1'"),
     Meant(r"\bstr\(1,2\)", _STRINGS, "'1','2'"),
@@ -67,7 +68,7 @@ MEANT = (
     Meant(
         r"experiment=sweep/\w+,sweep",
         "options of a list that bring axes are refused; Hydra loses the axes",
-        refusal="brings axes .*, which a list of options does not sweep over",
+        refusal="brings axes .*, which a list does not sweep over",
     ),
     Meant(
         r"experiment=choice\((sweep/\w+)\)",
