@@ -167,7 +167,7 @@ def _detach(config: DictConfig, key: str) -> None:
     """
     node: Any = config
     for part in key.split(".")[:-1]:
-        if not isinstance(node, DictConfig):
+        if not isinstance(node, DictConfig) or part not in node.keys():  # noqa: SIM118 - `in` resolves references
             return
         if OmegaConf.is_interpolation(node, part):
             node[part] = {}
