@@ -60,7 +60,7 @@ class SweptKey:
 
     def chooses(self, number: int) -> bool:
         """Return True if a value, given by its index, needs a new composition; a mapping sets keys of any option."""
-        return self.option and not isinstance(self.values[number], Mapping)
+        return self.option and not (self._has_mapping and isinstance(self.values[number], Mapping))
 
     def only(self, number: int) -> "SweptKey":
         """Return the key with one of its values, given by its index."""
