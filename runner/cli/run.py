@@ -170,20 +170,20 @@ def _simulate(line: _Line, overrides: Sequence[str], config_dirs: Sequence[Path]
     from runner.sweeps.job import RunJob, perform  # after validation, for the same reason
 
     run, made = perform(RunJob(config))
-    for text in _idle_in_one_run(composed):
-        print(one_line(f"runner: warning: {text}"), file=sys.stderr)
+    _warn_of_one_run(composed)
     return print_run(run, made, composed.resolved.get("caveats"))
 
 
-def _idle_in_one_run(composed: "Composed") -> list[str]:
-    """Return a line for each key of sweeps that the command line or an experiment sets for a single run."""
+def _warn_of_one_run(composed: "Composed") -> None:
+    """Print a line for each key of sweeps that the command line or an experiment sets for a single run."""
     from runner.config.compose.given_keys import given_keys, swept_keys
 
     found = [f"{key}: no effect, because one run is made; add -m" for key in given_keys(composed) if key in _OF_SWEEPS]
     if swept := swept_keys(composed):
-        name = f"experiment={composed.choices['experiment']}"
+        name = next(text for text in reversed(composed.overrides) if text.startswith("experiment="))
         found.append(f"{name}: {', '.join(swept)} not swept, because one run is made; add -m")
-    return found
+    for text in found:
+        print(one_line(f"runner: warning: {text}"), file=sys.stderr)
 
 
 def _preview(line: _Line, overrides: Sequence[str], config_dirs: Sequence[Path], as_json: bool) -> int:
@@ -203,6 +203,7 @@ def _preview(line: _Line, overrides: Sequence[str], config_dirs: Sequence[Path],
     else:
         composer.load(overrides)  # rejects several values
         plan, engine = Grid(ours, composer), Engine(0, None)
+        _warn_of_one_run(plan.composed(0))
     print_preview(plan, preview(plan, engine), as_json)
     return 0
 

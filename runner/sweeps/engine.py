@@ -27,7 +27,7 @@ _BACK_WITHIN = 120.0  # s without any worker
 # The next batch of runs reuses freed memory. Otherwise the system would clear 250 KB of fresh pages for each run.
 _MEMORY = {"MALLOC_TRIM_THRESHOLD_": 2**28, "MALLOC_MMAP_THRESHOLD_": 2**25}  # bytes
 _END_WITHIN = 0.5  # s for a worker after Ctrl-C
-_GO_ON = "finished runs are stored; the same command continues"
+GO_ON = "finished runs are stored; the same command continues"
 
 
 def in_process(queue: Queue, go_on: Callable[[], bool] = lambda: True) -> Generator[Report]:
@@ -87,7 +87,7 @@ def on_cluster(queue: Queue, client: Any) -> Generator[Report]:
                 # All runs that the worker had are suspects until each has been made separately.
                 report = _give_up(chunk) if chunk.name in suspects else Report(queue.give_back(chunk), "", 0.0)
             elif isinstance(future.exception(), OSError):
-                raise RunnerError(f"a worker failed: {future.exception()}; {_GO_ON}") from future.exception()
+                raise RunnerError(f"a worker failed: {future.exception()}; {GO_ON}") from future.exception()
             else:
                 raise future.exception()
             future.release()
@@ -95,7 +95,7 @@ def on_cluster(queue: Queue, client: Any) -> Generator[Report]:
             fill()
             yield report
     except (OSError, CancelledError) as error:
-        raise RunnerError(f"the Dask scheduler is lost; {_GO_ON}") from error
+        raise RunnerError(f"the Dask scheduler is lost; {GO_ON}") from error
     finally:
         client.cancel(list(under_way))
 
@@ -116,7 +116,7 @@ def _next_done(client: Any, futures: Sequence[Any]) -> Any:
         if client.nthreads():
             last_seen = time.monotonic()
         elif time.monotonic() - last_seen > _BACK_WITHIN:
-            raise RunnerError(f"all workers are gone and none came back for {_BACK_WITHIN:g} s; {_GO_ON}")
+            raise RunnerError(f"all workers are gone and none came back for {_BACK_WITHIN:g} s; {GO_ON}")
         with contextlib.suppress(TimeoutError):
             wait(futures, timeout=_LOOK_EVERY, return_when="FIRST_COMPLETED")
     return next(future for future in futures if future.done())

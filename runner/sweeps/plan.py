@@ -205,7 +205,7 @@ class Grid(Plan):
     def _locate(self, cell: int) -> tuple[tuple[int, ...], list[int]]:
         pairs = list(zip(self._keys, digits(cell, self._sizes), strict=True))
         group = tuple(number for key, number in pairs if key.option)
-        return group, [0 if key.option else number for key, number in pairs if not key.chooses(number)]
+        return group, [0 if key.option else number for key, number in pairs if not (key.option and key.chooses(number))]
 
     def _parts(self, group: Any) -> tuple[Sequence[str], Sequence[SweptKey], str]:
         numbers = iter(group)

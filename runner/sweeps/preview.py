@@ -48,9 +48,10 @@ def preview(plan: Grid, engine: Engine) -> Preview:
     stored &= np.array([name not in missing for name in checked.names], dtype=bool)
     if not len(ends.left):
         return Preview(checked.names, stored, Estimate(0.0), "")
+    until = time.monotonic() + _WITHIN  # before the deadline, whose error is then never taken for that of a probe
     try:
         with deadline(_WITHIN):
-            expected = estimate(plan, checked, ends.left, rules.kept, time.monotonic() + _WITHIN)
+            expected = estimate(plan, checked, ends.left, rules.kept, until)
     except TimeLimitError:
         return Preview(checked.names, stored, None, f"an unknown time, because an estimate takes over {_WITHIN:g} s")
     return Preview(checked.names, stored, expected, duration_text(rules, len(ends.left), engine, expected))

@@ -31,7 +31,7 @@ from runner.store.kinds import note
 from runner.store.names import Names
 from runner.sweeps.check import Checked, check
 from runner.sweeps.differing import Resolved
-from runner.sweeps.engine import in_process, local_client, on_cluster, remote_client
+from runner.sweeps.engine import GO_ON, in_process, local_client, on_cluster, remote_client
 from runner.sweeps.estimate import START_UP, Estimate, Pace, estimate
 from runner.sweeps.outcomes import Ends
 from runner.sweeps.plan import Plan
@@ -165,7 +165,7 @@ def make_missing(plan: Plan, checked: Checked, rules: Rules, engine: Engine) -> 
         for report in make_jobs(plan, checked, queue, left, engine, stored):
             ends.add(report.outcomes)
             if report.trouble:
-                raise StoreError(f"{report.trouble}; finished runs are stored; the same command continues")
+                raise StoreError(f"{report.trouble}; {GO_ON}")
             if rules.stop_at_failure and any(end.failure for end in report.outcomes):
                 break
     except KeyboardInterrupt:  # no worker is left to finish its run
@@ -267,7 +267,10 @@ def make_jobs(
     with _workers(queue, len(cells), engine, expected) as reports:
         progress.begin("simulating", ticks, "ticks", lambda: queue.ticks_made)
         for report in reports:
-            pace.add(len(report.outcomes))
+            try:
+                pace.add(len(report.outcomes))
+            except StoreError as error:
+                raise StoreError(f"{error}; {GO_ON}") from None
             yield report
     progress.begin("summing up")
 

@@ -1,6 +1,7 @@
 """Overrides of a sweep: the swept keys and their values."""
 
 import math
+import re
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from decimal import Decimal
@@ -11,22 +12,22 @@ from hydra.core.config_loader import ConfigLoader
 from hydra.core.override_parser.overrides_parser import OverridesParser
 from hydra.core.override_parser.types import (
     ChoiceSweep,
-    Glob,
     IntervalSweep,
     Override,
     RangeSweep,
-    Sweep,
     Transformer,
     ValueType,
 )
 
 from runner.base.errors import ConfigError
 from runner.base.limits import CELLS
-from runner.base.sanitize import quoted
+from runner.config.compose.composer import check_functions
 from runner.config.compose.composition_errors import COMPOSITION_ERRORS, explain
 from runner.config.compose.overrides import prepare
 from runner.config.compose.units import as_numbers
 from runner.store.axes import SweepAxis
+
+_RANGE = re.compile(r"\brange\([^()]*\)")
 
 
 @dataclass(frozen=True)
@@ -59,7 +60,7 @@ class SweptKey:
 
     def chooses(self, number: int) -> bool:
         """Return True if a value, given by its index, needs a new composition; a mapping sets keys of any option."""
-        return self.option and not isinstance(self.values[number], Mapping)
+        return self.option and not (self._has_mapping and isinstance(self.values[number], Mapping))
 
     def only(self, number: int) -> "SweptKey":
         """Return the key with one of its values, given by its index."""
@@ -142,16 +143,12 @@ def _check_cells(what: str, cells: float) -> None:
 
 
 def _read(override: Override, groups: Sequence[str]) -> SweptKey:
+    check_functions(override)
     swept = override.is_sweep_override()
     values = _values(override) if swept else [override.value()]
     name, typed = override.key_or_group, override.input_line or ""
     if not values:
         raise ConfigError(f"{name}: is swept over no value; give one or more")
-    if not isinstance(values, range) and any(map(_has_function, values)):
-        raise ConfigError(
-            f"{name}: a function inside a list of values ({quoted(typed.partition('=')[2])}). "
-            "Allowed: one function that has all values, such as choice(1,2,3), or only values, such as 1,2,3"
-        )
     return _key(name, override.get_key_element(), values, groups, "" if swept else typed)
 
 
@@ -177,33 +174,31 @@ def range_values(override: Override) -> Sequence[int] | Sequence[float]:
     """Return the numbers of a range, which excludes its stop.
 
     They are counted in decimal, with the digits of start and step: range(0.1,0.4,0.1) has 0.1, 0.2 and 0.3. Integers
-    stay integers, which are not expanded.
+    stay integers, which are not expanded. A sorted range has the numbers of the range: Hydra would replace
+    sort(range(5,0,-2)) by range(2,7,2), whose numbers differ.
 
     Raises:
         ConfigError: if the step is 0, an end is not finite, or there are too many numbers.
     """
     name = override.key_or_group
     found: Any = override.value()
+    given = override.get_value_string()
+    if "sort(" in given and (inner := _RANGE.search(given)):
+        (unsorted,) = OverridesParser.create().parse_overrides([f"{name}={inner[0]}"])
+        numbers, step_typed = range_values(unsorted), unsorted.value().step  # type: ignore[union-attr] # a RangeSweep
+        return numbers if (step_typed < 0) == (found.step < 0) else numbers[::-1]
     start, stop, step = (Decimal(str(each)) for each in (found.start, found.stop, found.step))
     if step == 0:
-        raise ConfigError(f"{name}: the step of a range must not be 0; found {override.get_value_string()}")
+        raise ConfigError(f"{name}: the step of a range must not be 0; found {given}")
     if not any(each.is_nan() for each in (start, stop, step)):
         _check_cells(f"{name}: the range", float((stop - start) / step))
     if not all(each.is_finite() for each in (start, stop, step)):
-        raise ConfigError(
-            f"{name}: the ends and the step of a range must be finite; found {override.get_value_string()}"
-        )
+        raise ConfigError(f"{name}: the ends and the step of a range must be finite; found {given}")
     count = max(0, math.ceil((stop - start) / step))
     if isinstance(found.start, int) and isinstance(found.step, int):
         end = found.stop if isinstance(found.stop, int) else found.start + count * found.step
         return range(found.start, end, found.step)
     return [float(start + number * step) for number in range(count)]
-
-
-def _has_function(value: object) -> bool:
-    """Return True if a value is or contains a function of Hydra, such as choice(1,2)."""
-    inner = value.values() if isinstance(value, Mapping) else value if isinstance(value, list) else ()
-    return isinstance(value, Sweep | Glob) or any(map(_has_function, inner))
 
 
 def _key(name: str, start: str, values: Sequence[Any], groups: Sequence[str], typed: str = "") -> SweptKey:

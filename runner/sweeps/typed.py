@@ -46,6 +46,11 @@ def _axes(params: DictConfig | None) -> list[str]:
     return [f"{key}={value if isinstance(value, str) else override_value(value)}" for key, value in pairs]
 
 
+def axis_names(params: DictConfig | None) -> str:
+    """Return the keys of hydra.sweeper.params, separated by commas; "" for none."""
+    return ", ".join(text.partition("=")[0] for text in _axes(params))
+
+
 def _lost_axes(
     key: SweptKey, fixed: Sequence[str], params: Mapping[str, Any] | None, source: Composer
 ) -> Iterator[str]:
@@ -57,8 +62,7 @@ def _lost_axes(
         except ConfigError:
             continue  # the check of the cells reports it
         if own and own != params:
-            names = ", ".join(text.partition("=")[0] for text in _axes(own))
             yield (
-                f"{key.override(number)}: brings axes ({names}), which a list of options does not sweep over. Allowed: "
-                f"a single option, one sweep after the other, or all in one grid: {key.name}=[A,B]"
+                f"{key.override(number)}: brings axes ({axis_names(own)}), which a list does not sweep over. "
+                f"Allowed: a single option, one sweep after the other, or all in one grid: {key.name}=[A,B]"
             )

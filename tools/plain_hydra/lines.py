@@ -1,6 +1,7 @@
 """Lines of overrides: written by hand for each question of the grammar, and drawn at random."""
 
 import random
+from collections.abc import Sequence
 
 # Separated by " | " because values may contain spaces.
 WRITTEN = """
@@ -32,6 +33,7 @@ controller.period=range(5ms,20ms,5ms)
 seed=sort(3,1,2)
 seed=sort(3,1,2,reverse=true)
 seed=sort(range(1,4),reverse=true)
+seed=sort(range(5,0,-2))
 seed=sort(choice(3,1))
 seed=sort(3,a)
 controller.period=sort(20ms,5ms,10ms)
@@ -140,6 +142,8 @@ _GROUPS = {
     "torque_limits": ("none", "thesis"),
     "preset": ("full_equations", "as_reported"),
 }
+GROUPS = tuple(_GROUPS)
+"""Groups of options."""
 _MAPPINGS = {
     "robot": ("{settling_band:0.002}", "{settling_band:3mm}"),
     "noise": ("{position:1e-4}", "{bias:0.1,position:2e-4}"),
@@ -167,15 +171,21 @@ def written() -> list[tuple[str, ...]]:
     return [tuple(line.split(" | ")) for line in WRITTEN.strip().splitlines()]
 
 
-def drawn(count: int, seed: int) -> list[tuple[str, ...]]:
-    """Return random lines of one to four overrides."""
+def drawn(count: int, seed: int, groups: Sequence[str] = GROUPS) -> list[tuple[str, ...]]:
+    """Return random lines of one to four overrides.
+
+    Args:
+        count: Number of lines.
+        seed: Seed of the draws.
+        groups: Groups whose options are drawn; Hydra takes 100 ms for each combination of options.
+    """
     draw = random.Random(seed)  # noqa: S311 - lines for a comparison
-    return [tuple(_override(draw) for _ in range(draw.choice((1, 2, 2, 3, 3, 4)))) for _ in range(count)]
+    return [tuple(_override(draw, groups) for _ in range(draw.choice((1, 2, 2, 3, 3, 4)))) for _ in range(count)]
 
 
-def _override(draw: random.Random) -> str:
+def _override(draw: random.Random, groups: Sequence[str]) -> str:
     kind = draw.choice(("option", "options", "mapping", "mixed", "value", "values", "values", "function", "gone"))
-    group, key = draw.choice([*_GROUPS]), draw.choice([*_VALUES])
+    group, key = draw.choice(groups), draw.choice([*_VALUES])
     if kind in ("option", "options"):
         return f"{group}={','.join(draw.sample(_GROUPS[group], 1 + (kind == 'options')))}"
     if kind in ("mapping", "mixed"):

@@ -5,7 +5,7 @@ options is cached. Hydra's own function then applies the overrides of values to 
 """
 
 import pickle
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from functools import lru_cache
 from pathlib import Path
 from typing import Any
@@ -15,7 +15,7 @@ from hydra._internal.config_loader_impl import ConfigLoaderImpl
 from hydra.core.config_loader import ConfigLoader
 from hydra.core.global_hydra import GlobalHydra
 from hydra.core.override_parser.overrides_parser import OverridesParser
-from hydra.core.override_parser.types import Override
+from hydra.core.override_parser.types import ChoiceSweep, Glob, Override, Sweep
 from hydra.types import RunMode
 from omegaconf import DictConfig, OmegaConf
 
@@ -75,6 +75,8 @@ class Composer:
         known = groups(self.config_dirs)
         try:
             parsed = parse(lines)
+            for override in parsed:
+                check_functions(override)
             if mode == RunMode.MULTIRUN:
                 parsed = [each for each in parsed if not each.is_sweep_override() or each.is_hydra_override()]
             options = [each for each in parsed if _chooses_option(each, known)]
@@ -123,6 +125,28 @@ def _parse(text: str) -> Override:
     return OverridesParser.create().parse_overrides([text])[0]
 
 
+def check_functions(override: Override) -> None:
+    """Check that no value of a list or mapping is a function of Hydra, such as choice(1,2).
+
+    Raises:
+        ConfigError: if there is such a value; Hydra would fail on it without naming the key.
+    """
+    value = override.value()
+    if any(map(_has_function, value.list if isinstance(value, ChoiceSweep) else _inner(value))):
+        raise ConfigError(
+            f"{override.key_or_group}: a function inside a list of values ({quoted(override.get_value_string())}). "
+            "Allowed: one function that has all values, such as choice(1,2,3), or only values, such as 1,2,3"
+        )
+
+
+def _has_function(value: object) -> bool:
+    return isinstance(value, Sweep | Glob) or any(map(_has_function, _inner(value)))
+
+
+def _inner(value: object) -> Iterable[object]:
+    return value.values() if isinstance(value, Mapping) else value if isinstance(value, list) else ()
+
+
 def put_values(config: DictConfig, overrides: Sequence[str]) -> None:
     """Put the values of overrides into a config that Hydra composed, including values of unknown keys.
 
@@ -130,7 +154,25 @@ def put_values(config: DictConfig, overrides: Sequence[str]) -> None:
         ConfigError: see `prepare`.
         Exception: one of COMPOSITION_ERRORS, as Hydra raises it.
     """
-    ConfigLoaderImpl._apply_overrides_to_config(parse(force(overrides)), config)
+    for override in parse(force(overrides)):
+        if not override.is_delete():
+            _detach(config, override.key_or_group)
+        ConfigLoaderImpl._apply_overrides_to_config([override], config)
+
+
+def _detach(config: DictConfig, key: str) -> None:
+    """Replace a reference on the path to a key by an empty mapping, as OmegaConf 2.3 does.
+
+    OmegaConf 2.4 would put the value into the mapping that it refers to, which other keys share.
+    """
+    node: Any = config
+    for part in key.split(".")[:-1]:
+        if not isinstance(node, DictConfig) or part not in node.keys():  # noqa: SIM118 - `in` resolves references
+            return
+        if OmegaConf.is_interpolation(node, part):
+            node[part] = {}
+            return
+        node = node._get_node(part)
 
 
 def check_composed(config: DictConfig) -> None:

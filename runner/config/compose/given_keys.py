@@ -8,7 +8,7 @@ from typing import Any
 from omegaconf import OmegaConf
 
 from runner.base.bounded_yaml import CONFIG, read_yaml
-from runner.base.dotted_keys import dotted, get, leaves, split_override
+from runner.base.dotted_keys import dotted, leaves, split_override
 from runner.base.paths import conf_dir
 from runner.config.compose.composer import Composer, parse
 from runner.config.compose.files import place_in
@@ -37,11 +37,12 @@ def given_keys(composed: Composed) -> dict[str, str]:
 
 
 def swept_keys(composed: Composed) -> list[str]:
-    """Return the keys with several values in the file of the experiment, which `runner -m` sweeps."""
-    name = composed.choices.get("experiment")
-    content = _content_of("experiment", name, composed.config_dirs) if name else {}
-    params = get(content, ("hydra", "sweeper", "params"))
-    return [str(key) for key in params] if isinstance(params, Mapping) else []
+    """Return the keys to which the chosen experiments give several values, which `runner -m` sweeps."""
+    if not any(text.startswith("experiment=") for text in composed.overrides):
+        return []
+    params = Composer(composed.config_dirs, composed.root).load(composed.overrides).hydra.sweeper.params
+    plain: Any = {} if params is None else OmegaConf.to_container(params, resolve=False)
+    return [dotted(place) for place, _ in leaves(plain, lists=False)]
 
 
 def references_in(composed: Composed) -> set[str]:

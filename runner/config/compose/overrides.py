@@ -7,7 +7,7 @@ from runner.base.bounded_yaml import CONFIG
 from runner.base.dotted_keys import calls_function
 from runner.base.errors import ConfigError
 from runner.base.sanitize import quoted
-from runner.config.compose.files import SAYS_HOW, groups
+from runner.config.compose.files import SAYS_HOW, groups, outside_error
 from runner.config.compose.units import with_numbers
 
 _CLOSING = {"(": ")", "[": "]", "{": "}"}
@@ -136,6 +136,8 @@ def _problem(override: str, names: set[str]) -> str | None:
         return f"{key}: is Hydra's own; you may set hydra.sweeper.workers, .address and .params; folders: --config-dir"
     if given and group in names and (not value or "${" in value):
         return f"{group}: {quoted(value)} is not an option; choose by name, see `runner list`"
+    if group in names and "{" not in value and ".." in value.split("/"):
+        return outside_error(f"{group}/{value}").problems[0]
     return None
 
 

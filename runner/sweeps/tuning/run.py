@@ -29,6 +29,7 @@ from runner.sweeps.tuning.key import RANGES, Key, read_key
 from runner.sweeps.tuning.objective import Objective, Trial, best
 from runner.sweeps.tuning.queue import TrialQueue
 from runner.sweeps.tuning.study import JOURNAL, Fresh, Study, Tuning
+from runner.sweeps.typed import axis_names
 from runner.sweeps.writer import Rules
 
 _FEWEST = 8  # repetitions on the fresh seed, enough to compare five metrics in pairs
@@ -63,6 +64,11 @@ def tune(
     fixed, keys = _read(overrides, config_dirs)
     loader = Composer(config_dirs)
     sweeper = loader.sweeper(fixed)
+    if names := axis_names(sweeper.params):
+        raise ConfigError(
+            f"hydra.sweeper.params: brings axes ({names}), which a tuning does not sweep over. "
+            "Allowed: null, as hydra.sweeper.params=null, or an experiment without axes"
+        )
     engine = Engine(sweeper.workers, sweeper.address)
     shared = [text for text in fixed if not text.startswith("hydra.")]
     _check_numbers(Grid(shared, loader), keys)

@@ -52,11 +52,15 @@ def test_a_mistake_is_told_in_a_line(cli, copy_run, line, message):
 OVERRIDES = [
     ("-m seed=choice(1,2),3", "seed: a function inside a list of values ('choice(1,2),3'). Allowed: one function that"),
     ("-m seed=1,[choice(1,2)]", "seed: a function inside a list of values ('1,[choice(1,2)]'). Allowed: one function"),
+    (
+        "seed=[choice(1,2),3]",
+        "seed: a function inside a list of values ('[choice(1,2),3]'). Allowed: one function that",
+    ),
+    ("seed=choice(1,2),3", "seed: a function inside a list of values ('choice(1,2),3'). Allowed: one function that"),
     ("-m noise=glob(t*),none", "noise: a function inside a list of values ('glob(t*),none'). Allowed: one function"),
     ("-m seed=interval(0,1)", "seed: an interval has no single values to sweep over (interval(0,1)). Allowed: values"),
     ("-m seed=range(0,1,0)", "seed: the step of a range must not be 0; found range(0,1,0)"),
     ("-m seed=range(0,nan)", "seed: the ends and the step of a range must be finite; found range(0,nan)"),
-    ("seed=choice(1,2),3", "'seed=choice(1,2),3' gives several values; `runner -m` sweeps over them"),
     ("seed=range(0,3)", "'seed=range(0,3)' gives several values; `runner -m` sweeps over them"),
 ]
 

@@ -134,3 +134,20 @@ def test_keys_of_a_robot_of_ones_own_are_tuned(cli, tmp_path):
         "tune", "robot=mine", *SHORT[1:], RANGE, "--minimize=energy", "--trials=2", "--config-dir", tmp_path / "own"
     )
     assert ending.code == 0, ending.err
+
+
+def test_an_experiment_that_brings_axes_is_refused(cli, tmp_path):
+    line = (
+        "tune",
+        "experiment=sweep/frequency_period",
+        "robot.payload.mass=interval(0,1)",
+        "--minimize",
+        "peak_torque",
+    )
+    ending = cli(*line)
+    assert (ending.code, ending.out) == (2, "")
+    axes = "controller.natural_frequency, controller.period"
+    assert (
+        f"hydra.sweeper.params: brings axes ({axes}), which a tuning does not sweep over. Allowed: null" in ending.err
+    )
+    assert list(tmp_path.iterdir()) == []

@@ -152,5 +152,7 @@ def test_one_run_tells_that_it_sweeps_nothing(cli):
     ending = cli("experiment=sweep/frequency_period", "duration=0.05", "repetitions=1")
     swept = "controller.natural_frequency, controller.period not swept, because one run is made; add -m"
     assert f"warning: experiment=sweep/frequency_period: {swept}\n" in ending.err
+    listed = "experiment=[sweep/frequency_period,thesis/figure_3_5]"
+    assert f"warning: {listed}: {swept}\n" in cli(listed, "--dry-run").err
     ending = cli(*ARM, "sweep.time_limit=9", "duration=0.05")
     assert "warning: sweep.time_limit: no effect, because one run is made; add -m\n" in ending.err

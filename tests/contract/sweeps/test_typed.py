@@ -105,7 +105,7 @@ def test_axes_of_an_experiment_are_swept_over(own, tmp_path):
     "line", ["experiment=two_seeds,two_periods", "experiment=no_axes,two_seeds", "experiment=glob(two*)"]
 )
 def test_an_experiment_with_axes_is_no_value_of_a_list(own, tmp_path, line):
-    with pytest.raises(ConfigError, match=r"experiment=two_seeds: brings axes \(seed\), which a list of options does"):
+    with pytest.raises(ConfigError, match=r"experiment=two_seeds: brings axes \(seed\), which a list does"):
         cells(line, config_dirs=[tmp_path])
 
 

@@ -97,6 +97,11 @@ def test_a_quantity_that_does_not_fit_stays_as_typed():
         ("controller.period=range(0.1,0.05,0.01)", None),
         ("seed=range(0,2.5)", [0, 1, 2]),
         ("seed=range(5,0,-2)", [5, 3, 1]),
+        ("seed=sort(range(5,0,-2))", [1, 3, 5]),
+        ("seed=sort(range(0,5,2),reverse=true)", [4, 2, 0]),
+        ("seed=sort(range(0,5,2))", [0, 2, 4]),
+        ("noise.position=sort(range(1,0,-0.3))", [0.1, 0.4, 0.7, 1.0]),
+        ("controller.period=sort(range(20ms,5ms,-10ms))", [0.01, 0.02]),
     ],
 )
 def test_ranges_are_counted_in_decimal_without_their_stop(argument, values):
