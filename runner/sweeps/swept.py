@@ -75,7 +75,9 @@ class SweptKey:
         return same and not self._has_mapping and not (earlier.option and earlier._has_mapping)
 
     def needs_order(self, other: "SweptKey") -> bool:
-        """Return True if both entries set values, and one sets a part of what the other sets."""
+        """Return True if both entries choose options of one group, or set values, one a part of what the other sets."""
+        if self.option and other.option:
+            return self.start == other.start
         if any(each.option and not each._has_mapping for each in (self, other)):
             return False
         one, two = f"{self.name}.", f"{other.name}."

@@ -45,7 +45,8 @@ MEANT = (
     Meant(r"range\(0\.3,0,-0\.1\)", _DECIMAL, "0.3,0.2,0.1"),
     Meant(r"sort\(range\(5,0,-2\)\)", "a sorted range has the values of the range; Hydra adds one", "1,3,5"),
     Meant(r"range\(0,2\.5\)", "integers stay integers if only the stop is a float", "0,1,2"),
-    Meant(r"\bstr\((\w+|\[1,2\])\)", _STRINGS, r"'\1'"),
+    Meant(r"\bstr\((\w+)\)", _STRINGS, r"'\1'"),
+    Meant(r"\bstr\(\[1,2\]\)", _STRINGS, "['1','2']"),
     Meant(r"\bstr\(1,2\)", _STRINGS, "'1','2'"),
     Meant(
         r"glob\(q|range\(3,3\)",
