@@ -123,17 +123,21 @@ def changed_keys(scene: Scene, resolved: Mapping[str, Any], first_joint: str) ->
 
 def unwalked() -> list[tuple[str, str]]:
     """Return each kind and key of the walked groups that no scene changes."""
-    walked, plants = set[tuple[str, str]](), set[str]()
-    for name, engine_name in [*((name, "rk4") for name in SCENES), *(("arm", name) for name in ENGINES)]:
-        base = base_of(name, engine_name)
+    walked = set[tuple[str, str]]()
+    for name in SCENES:
         try:
-            resolved = compose(base).resolved
+            resolved = compose(base_of(name, "rk4")).resolved
         except ConfigError:
-            resolved = compose([*base, *ENGINES["rk4_flexible"]]).resolved  # motor_pd takes the springs of the plant
-        walked |= {(key.kind, key.name) for key, _ in changed_keys(SCENES[name], resolved, "joint1")}
-        plants.add(resolved["plant"]["kind"])
+            resolved = compose(base_of(name, "rk4_flexible")).resolved  # motor_pd takes the springs of the plant
+        walked |= _changed_in(name, resolved)
+    for engine_name in ("rk4_flexible", "rk4_flexible_links"):  # other plants have no key of their own
+        walked |= _changed_in("arm", compose(base_of("arm", engine_name)).resolved)
     missing = [(kind, key) for kind, key in known_keys() if (kind, key) not in walked and not _is_in(key, LEFT_OUT)]
-    return sorted([*missing, *(("plant", kind) for kind in PLANTS.names() if kind not in plants)])
+    return sorted([*missing, *(("plant", kind) for kind in PLANTS.names() if kind not in ENGINES)])
+
+
+def _changed_in(name: str, resolved: Mapping[str, Any]) -> set[tuple[str, str]]:
+    return {(key.kind, key.name) for key, _ in changed_keys(SCENES[name], resolved, "joint1")}
 
 
 def base_of(name: str, engine_name: str) -> list[str]:
@@ -166,7 +170,8 @@ class Walk:
         if after.content != before.content:
             same = after.name == before.name
             return ("NOT IN THE HASH", "") if same else ("acts", "")
-        if new := after.reported - before.reported:
+        own = {text for text in after.reported if text.startswith(f"{step.key}: ")}  # the run may report it already
+        if new := (after.reported - before.reported) | own:
             return "reported", "; ".join(sorted(new))
         reason = next(
             (EXCEPTIONS[text] for text in (f"{step.scene} {step.key}", step.key, step.change) if text in EXCEPTIONS), ""
@@ -181,7 +186,8 @@ class Walk:
             return Outcome("", b"", frozenset(), str(error))
         reported = [*result.provenance["warnings"], *(caveat.text for caveat in result.caveats.caveats)]
         values = {name: list(map(float, summary.values)) for name, summary in result.metrics.items()}
-        content = [*_arrays(result.trace), json.dumps(values, sort_keys=True).encode(), repr(result.failure).encode()]
+        measured = repr((result.failure, result.plant_error, result.rounding)).encode()
+        content = [*_arrays(result.trace), json.dumps(values, sort_keys=True).encode(), measured]
         return Outcome(run_hash(config.resolved, config.arm.urdf), b"".join(content), frozenset(reported))
 
 

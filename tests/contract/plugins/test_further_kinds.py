@@ -77,7 +77,7 @@ def test_no_option_is_without_effect_and_untold(folder):
     options = {kind.kinds.group: kind.option for kind in KINDS}
     steps = [step for plant in ("rk4", "kinematic") for step in steps_of(f"plain{IDEAL[plant]}", plant, folder)]
     steps += steps_of("friction", "rk4", folder)
-    assert {step.change for step in steps} >= {options["noise"], options["mismatch"], options["plant"]}
+    assert {step.change for step in steps} >= {options[group] for group in ("noise", "mismatch", "plant", "trajectory")}
     judged = judge_all(steps, folder, "compiled")
     judged += judge_all(steps_of("plain", "mujoco", folder)[:8], folder, "interpreted")
     assert [str(each) for each in judged if each.verdict in FAULTS] == []
