@@ -132,10 +132,10 @@ SCENES: Mapping[str, Scene] = {
         f"{_LAW} controller=joint_pid torque_limits.max=2 noise.position=1e-3", ["controller"], _OF_TASK
     ),
     **{
-        f"seven joints, {law}": Scene(f"{_SEVEN} controller={law}", _OF_TASK)
+        f"seven joints by {law}": Scene(f"{_SEVEN} controller={law}", _OF_TASK)
         for law in (*_LAWS, "iterative_learning") if law != "impedance"
     },
-    "seven joints, motor_pd": Scene(
+    "seven joints by motor_pd": Scene(
         f"{_SEVEN} robot.armature=0 controller=motor_pd plant.flexible_joints.static_deflection=unknown", _OF_TASK
     ),
     "impedance": Scene(f"{_SEVEN} controller=impedance {_PUSH}", ["controller"]),
@@ -173,8 +173,8 @@ SCENES: Mapping[str, Scene] = {
         ["controller.actuated_stages", "controller.sensor"],
         ["environment=sticky_wall"],
     ),
-    "wall, with a sensor of its own": Scene(f"{_WALL} {_SENSOR}", ["controller.sensor"]),
-    "wall, stages": Scene(f"robot=combined {_WALL}", ["controller.actuated_stages"]),
+    "wall with a sensor of its own": Scene(f"{_WALL} {_SENSOR}", ["controller.sensor"]),
+    "wall of stages": Scene(f"robot=combined {_WALL}", ["controller.actuated_stages"]),
     "unfelt": Scene(
         _ARM, ["wrist_sensor", "joint_torque_sensor", "endpoint_sensor", "disturbance_observer.torque", "plant_error",
                "noise.velocity_bandwidth", "robot.path_size", "robot.joint_error_limit",
