@@ -283,6 +283,11 @@ def _damps_no_base(config: RunConfig) -> str | None:
     return None if damps else f"controller.coupling is {law.coupling}"
 
 
+def _stays_at_rest(config: RunConfig) -> str | None:
+    rests = isinstance(config.controller, HybridForceConfig) and config.resolved["trajectory"]["kind"] == "goal"
+    return "trajectory.kind=goal has no desired velocity" if rests else None
+
+
 def _corrects_no_reading(_: RunConfig) -> str:
     return (
         "a control law corrects readings by bias, rotation and height of controller.sensor; wrist_sensor has the rest"
@@ -313,6 +318,7 @@ _RULES = (
     _Rule([f"controller.{name}" for name in ("task", "singularity_damping", "null_space_frequency")], _follows_joints),
     _Rule(["controller.check_stability"], _checks_no_wall),
     _Rule(["controller.damping_gain"], _damps_no_base),
+    _Rule(["controller.feedforward"], _stays_at_rest),
     _Rule([f"controller.sensor.{name}" for name in _UNCORRECTED], _corrects_no_reading),
     _Rule(["robot.payload.position"], _bears_nothing),
     _Rule(["robot.tool.tip_radius"], _meets_no_wall),

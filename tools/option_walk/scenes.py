@@ -174,6 +174,7 @@ SCENES: Mapping[str, Scene] = {
         ["environment=sticky_wall"],
     ),
     "wall with a sensor of its own": Scene(f"{_WALL} {_SENSOR}", ["controller.sensor"]),
+    "along the wall": Scene(f"robot=mini {_WALL} trajectory=quintic", ["controller.feedforward"]),
     "wall of stages": Scene(f"robot=combined {_WALL}", ["controller.actuated_stages"]),
     "unfelt": Scene(
         _ARM, ["wrist_sensor", "joint_torque_sensor", "endpoint_sensor", "disturbance_observer.torque", "plant_error",

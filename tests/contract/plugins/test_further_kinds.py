@@ -71,7 +71,7 @@ def test_a_joint_motion_of_a_further_trajectory_is_followed(trace):
     np.testing.assert_allclose(moved.q[-1] - moved.q[0], 0.05, atol=1e-4)
 
 
-@pytest.mark.costs(24)
+@pytest.mark.costs(16)
 def test_no_option_is_without_effect_and_untold(folder):
     """A bounded share of `python -m tools.option_walk`."""
     options = {kind.kinds.group: kind.option for kind in KINDS}
@@ -86,7 +86,7 @@ def test_no_option_is_without_effect_and_untold(folder):
 IDEAL = {"rk4": "", "kinematic": " ideal"}
 
 
-@pytest.mark.costs(12)
+@pytest.mark.costs(10)
 def test_every_kind_and_key_has_a_scene_that_changes_it(monkeypatch):
     """A new kind or key needs one in `tools/option_walk/scenes.py`."""
     assert unwalked() == []
