@@ -279,12 +279,13 @@ def _checks_no_wall(config: RunConfig) -> str | None:
 
 def _damps_no_base(config: RunConfig) -> str | None:
     law = config.controller
-    damps = not isinstance(law, MacroMiniConfig) or law.coupling == "inertial_damping"
-    return None if damps else f"controller.coupling is {law.coupling}"
+    if not isinstance(law, MacroMiniConfig) or law.coupling == "inertial_damping":
+        return None
+    return f"controller.coupling is {law.coupling}"
 
 
 def _stays_at_rest(config: RunConfig) -> str | None:
-    rests = isinstance(config.controller, HybridForceConfig) and config.resolved["trajectory"]["kind"] == "goal"
+    rests = isinstance(config.controller, HybridForceConfig) and get(config.resolved, "trajectory.kind") == "goal"
     return "trajectory.kind=goal has no desired velocity" if rests else None
 
 
