@@ -16,6 +16,7 @@ from runner.config.compose.given_keys import given_keys, references_in
 from runner.config.run import RunConfig
 from runner.controllers.force.hybrid_force import HybridForceConfig
 from runner.controllers.force.impedance import ImpedanceConfig
+from runner.controllers.macro_mini.macro_mini import MacroMiniConfig
 from runner.environments.push import PushConfig
 from runner.environments.wall import WallConfig
 from runner.plants import PLANTS
@@ -28,6 +29,7 @@ from runner.trajectories.joint_motion import TipOfJoints
 
 _FRICTION = "robot.friction"
 _PLAIN = {"wrist_sensor": "ideal"}  # option of a group that sets nothing; of other groups none
+_UNCORRECTED = "range", "resolution", "noise", "drift", "low_pass", "mass"
 _SHAPES = "stribeck_speed", "stribeck_curve", "sigmoid.steepness", "sigmoid.shift"  # no torques
 
 
@@ -269,6 +271,30 @@ def _meets_no_wall(config: RunConfig) -> str | None:
     return None if type(config.environment) is WallConfig else "environment is not a wall"
 
 
+def _checks_no_wall(config: RunConfig) -> str | None:
+    if PLANTS.commands(config.plant.kind) != "position":
+        return f"plant={config.plant.kind} does not move the joints ideally"
+    return _meets_no_wall(config)
+
+
+def _damps_no_base(config: RunConfig) -> str | None:
+    law = config.controller
+    if not isinstance(law, MacroMiniConfig) or law.coupling == "inertial_damping":
+        return None
+    return f"controller.coupling is {law.coupling}"
+
+
+def _stays_at_rest(config: RunConfig) -> str | None:
+    rests = isinstance(config.controller, HybridForceConfig) and get(config.resolved, "trajectory.kind") == "goal"
+    return "trajectory.kind=goal has no desired velocity" if rests else None
+
+
+def _corrects_no_reading(_: RunConfig) -> str:
+    return (
+        "a control law corrects readings by bias, rotation and height of controller.sensor; wrist_sensor has the rest"
+    )
+
+
 _RULES = (
     _Rule(["mismatch"], _moves_ideally, but=["mismatch.length", "mismatch.kind"]),
     _Rule(["endpoint_sensor"], _reads_no_tip),
@@ -291,6 +317,10 @@ _RULES = (
     _Rule(["controller.natural_frequency", "controller.damping_ratio"], _has_one_stage_or_all_comply),
     _Rule(["controller.null_space_frequency"], _is_not_redundant),
     _Rule([f"controller.{name}" for name in ("task", "singularity_damping", "null_space_frequency")], _follows_joints),
+    _Rule(["controller.check_stability"], _checks_no_wall),
+    _Rule(["controller.damping_gain"], _damps_no_base),
+    _Rule(["controller.feedforward"], _stays_at_rest),
+    _Rule([f"controller.sensor.{name}" for name in _UNCORRECTED], _corrects_no_reading),
     _Rule(["robot.payload.position"], _bears_nothing),
     _Rule(["robot.tool.tip_radius"], _meets_no_wall),
 )

@@ -14,6 +14,7 @@ from runner.statistics.interval import CONFIDENCE
 Levels = NDArray[np.intp]
 
 _AT_ONCE = 111  # permutations in memory together
+_MOST_VALUES = 2_000_000  # in memory together
 _NOISE = 1e-12  # share of the variation below which nothing but rounding is left
 
 
@@ -93,8 +94,9 @@ class Sample:
             return Tested(share, None, "nothing is left to explain")
         observed = _f_values(residual[:, None], base, added, freedom)[0]
         as_large = 0
-        for done in range(0, self._permutations, _AT_ONCE):
-            shuffled = self._permuted(residual, min(_AT_ONCE, self._permutations - done))
+        at_once = min(_AT_ONCE, max(1, _MOST_VALUES // len(residual)))
+        for done in range(0, self._permutations, at_once):
+            shuffled = self._permuted(residual, min(at_once, self._permutations - done))
             as_large += int(np.sum(_f_values(shuffled, base, added, freedom) >= observed * (1 - 1e-9)))
         return Tested(share, (1 + as_large) / (1 + self._permutations))
 

@@ -30,28 +30,28 @@ class SignedRanks:
     Args:
         differences: The differences, shape (n,), n one or more; infinite ones are larger than all others and equal to
             each other.
+
+    Attributes:
+        estimate: The Hodges-Lehmann estimate of the difference: the median of the Walsh averages.
     """
 
     def __init__(self, differences: FloatArray) -> None:
-        one, other = np.triu_indices(len(differences))
-        with np.errstate(invalid="ignore"):
-            averages = (differences[one] + differences[other]) / 2
-        averages[np.isnan(averages)] = 0.0  # of both infinities
-        self._averages = np.sort(averages)
+        averages = _walsh_averages(differences)
+        self._differences, self._count = differences, len(averages)
+        places = [(self._count - 1) // 2, self._count // 2]
+        middle = np.partition(averages, places)[places].tolist()
+        self.estimate = float(middle[0] if middle[0] == middle[1] else sum(middle) / 2)
+        self._at_most = int(np.count_nonzero(averages <= 0.0))
+        self._at_least = int(np.count_nonzero(averages >= 0.0))
         self._tail = _lower_tail(len(differences))
+        self._intervals: dict[int, tuple[float, float]] = {}
 
-    @cached_property
-    def estimate(self) -> float:
-        """The Hodges-Lehmann estimate of the difference: the median of the Walsh averages."""
-        middle = self._averages[(len(self._averages) - 1) // 2], self._averages[len(self._averages) // 2]
-        return float(middle[0] if middle[0] == middle[1] else sum(middle) / 2)
-
-    @cached_property
+    @property
     def effect(self) -> float:
         """The matched-pairs rank-biserial correlation: -1 with all differences below zero, 1 with all above."""
-        return (self._at_least - self._at_most) / len(self._averages)
+        return (self._at_least - self._at_most) / self._count
 
-    @cached_property
+    @property
     def p_value(self) -> float:
         """The two-sided p-value: exact up to EXACT_UP_TO differences, of the normal law beyond."""
         fewer = min(self._at_most, self._at_least)
@@ -60,17 +60,19 @@ class SignedRanks:
     def interval(self, level: float) -> tuple[float, float] | None:
         """Return the interval that misses the difference with at most a given probability; None with too few pairs."""
         k = int(np.searchsorted(2.0 * self._tail, level))
-        return (float(self._averages[k - 1]), float(self._averages[-k])) if k else None
+        if k and k not in self._intervals:  # the averages, half a million for 1000 pairs, are not kept
+            ordered = np.partition(_walsh_averages(self._differences), (k - 1, self._count - k))
+            self._intervals[k] = float(ordered[k - 1]), float(ordered[self._count - k])
+        return self._intervals[k] if k else None
 
-    @cached_property
-    def _at_most(self) -> int:
-        """Number of averages that are not above zero."""
-        return int(np.searchsorted(self._averages, 0.0, side="right"))
 
-    @cached_property
-    def _at_least(self) -> int:
-        """Number of averages that are not below zero."""
-        return len(self._averages) - int(np.searchsorted(self._averages, 0.0, side="left"))
+def _walsh_averages(differences: FloatArray) -> FloatArray:
+    """Return the means of any two differences, and each difference itself, in no order."""
+    one, other = np.triu_indices(len(differences))
+    with np.errstate(invalid="ignore"):
+        averages: FloatArray = (differences[one] + differences[other]) / 2
+    averages[np.isnan(averages)] = 0.0  # of both infinities
+    return averages
 
 
 @lru_cache(maxsize=64)

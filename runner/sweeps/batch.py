@@ -1,6 +1,6 @@
 """Batch simulation of the runs of a chunk."""
 
-from collections.abc import Iterable, Iterator, Sequence
+from collections.abc import Callable, Iterable, Iterator, Sequence
 
 import numpy as np
 
@@ -24,7 +24,9 @@ from runner.sweeps.writer import ResultWriter, Rules, without_trace
 Named = tuple[str, Collector]
 
 
-def make_together(jobs: Sequence[tuple[str, RunConfig]], rules: Rules, writer: ResultWriter) -> tuple[set[str], bool]:
+def make_together(
+    jobs: Sequence[tuple[str, RunConfig]], rules: Rules, writer: ResultWriter, go_on: Callable[[], bool]
+) -> tuple[set[str], bool]:
     """Simulate the runs of a chunk that can share a batch; return the names of the finished ones and if one failed.
 
     Runs with metrics of a plug-in are left out, and so are runs with too many repetitions for the record to list, and
@@ -37,6 +39,7 @@ def make_together(jobs: Sequence[tuple[str, RunConfig]], rules: Rules, writer: R
         jobs: Name and checked config of each run.
         rules: Rules for the execution and storage of the runs; the time limit applies to runs that end together.
         writer: Writer of the finished runs.
+        go_on: Function called before each batch; none starts after it has returned False.
 
     Raises:
         StoreError: if a run cannot be written.
@@ -48,7 +51,7 @@ def make_together(jobs: Sequence[tuple[str, RunConfig]], rules: Rules, writer: R
             found = [(name, batcher.repetitions(config)) for name, config in few]
         chosen = [(name, runs) for name, runs in found if runs is not None]
         steps = simulate_together([runs for _, runs in chosen], batcher)
-        while True:
+        while go_on():
             with deadline(rules.settings.time_limit):
                 complete = next(steps, None)
             if complete is None:

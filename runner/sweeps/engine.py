@@ -101,11 +101,18 @@ def on_cluster(queue: Queue, client: Any) -> Generator[Report]:
 
 
 def _work(chunk: Chunk, topic: str) -> Report:
-    """Execute the jobs of a chunk in a worker, which publishes the number of finished ticks on a topic."""
-    from distributed import get_worker
+    """Execute the jobs of a chunk in a worker, which publishes the number of finished ticks on a topic.
+
+    A worker that closes, as after Ctrl-C, starts no further job.
+    """
+    from distributed import Status, get_worker
 
     worker = get_worker()
-    return work(chunk, lambda ticks: worker.log_event(topic, (chunk.name, ticks)))
+    return work(
+        chunk,
+        lambda ticks: worker.log_event(topic, (chunk.name, ticks)),
+        lambda: worker.status not in (Status.closing, Status.closed),
+    )
 
 
 def _next_done(client: Any, futures: Sequence[Any]) -> Any:
@@ -178,7 +185,7 @@ def local_client(workers: int, scratch: Path) -> Iterator[Any]:
 
 
 async def _end_workers(cluster: Any) -> None:
-    """End the processes of a cluster; by default each has 4 s, in which it starts further runs of its chunk."""
+    """End the processes of a cluster soon; by default each has 4 s for its running job."""
     await asyncio.gather(*(nanny.close(timeout=_END_WITHIN) for nanny in cluster.workers.values()))
 
 

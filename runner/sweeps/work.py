@@ -90,12 +90,13 @@ def dask_setup(_worker: object) -> None:
     signal.signal(signal.SIGINT, signal.SIG_IGN)
 
 
-def work(chunk: Chunk, tell: Callable[[int], None] | None = None) -> Report:
+def work(chunk: Chunk, tell: Callable[[int], None] | None = None, go_on: Callable[[], bool] = lambda: True) -> Report:
     """Execute the jobs of a chunk; a chunk that was interrupted before continues.
 
     Args:
         chunk: The chunk.
         tell: Callback that receives the number of finished ticks each second, from a thread.
+        go_on: Function called before each job or batch of jobs; none starts after it has returned False.
     """
     quiet_environment()
     start = time.perf_counter()
@@ -108,13 +109,13 @@ def work(chunk: Chunk, tell: Callable[[int], None] | None = None) -> Report:
                 raise StoreError(
                     f"a worker does not see {chunk.rules.sweep}; outputs must be a folder that all workers share"
                 )
-            _make_all(chunk, disk, outcomes)
+            _make_all(chunk, disk, outcomes, go_on)
         except RunnerError as error:
             trouble = str(error)
     return Report(outcomes, trouble, time.perf_counter() - start)
 
 
-def _make_all(chunk: Chunk, disk: Executor, outcomes: list[store.Outcome]) -> None:
+def _make_all(chunk: Chunk, disk: Executor, outcomes: list[store.Outcome], go_on: Callable[[], bool]) -> None:
     """Execute the jobs of a chunk: first those that can share a batch, then the others one by one."""
     rules, known = chunk.rules, find_stored(chunk)
     outcomes += known.values()
@@ -122,9 +123,9 @@ def _make_all(chunk: Chunk, disk: Executor, outcomes: list[store.Outcome]) -> No
     parts = [[job for job in zip(part.names, part.configs, strict=True) if job[0] not in known] for part in chunk.parts]
     left = [job for part in parts for job in part]
     jobs = list(_checked_runs(parts))
-    made, failed = make_together(jobs, rules, writer) if len(jobs) > 1 else (set(), False)
+    made, failed = make_together(jobs, rules, writer, go_on) if len(jobs) > 1 else (set(), False)
     for name, composed in left:
-        if failed and rules.stop_at_failure:
+        if (failed and rules.stop_at_failure) or not go_on():
             break
         if name not in made:
             failed = writer.put(name, _make(name, composed, rules))

@@ -22,7 +22,7 @@ pytestmark = pytest.mark.usefixtures("interruptible")
 
 def stored(outputs):
     """Return the durations of stored runs; each must be complete."""
-    folders = list((outputs / "runs").iterdir())
+    folders = list((outputs / "runs").glob("*"))
     assert [sorted(path.name for path in folder.iterdir()) for folder in folders] == [WHOLE] * len(folders)
     return sorted(store.open_run(folder).config["duration"] for folder in folders)
 
@@ -70,6 +70,64 @@ def test_a_signal_ends_all_processes_and_says_how_to_go_on(tmp_path, gate, numbe
     assert err.splitlines()[2:] == [f"runner: {word}; finished runs are stored; the same command continues"]
     assert 1 <= len(stored(tmp_path / "outputs")) <= 2
     assert not list(tmp_path.glob("outputs/sweeps/*/scratch"))
+
+
+CLOSING = """\
+import threading
+from pathlib import Path
+
+from distributed import Status, get_worker
+
+UNITS = {{}}
+
+
+def evaluate(trace, context):
+    with Path({ends!r}).open("a") as file:
+        file.write("a run\\n")
+    stop()
+    while get_worker().status not in (Status.closing, Status.closed):
+        threading.Event().wait(0.001)
+    return {{}}
+"""
+
+
+@pytest.mark.costs(4)
+def test_after_ctrl_c_no_further_run_starts(tmp_path, gate):
+    """A run ends while its worker closes; nine others of the same worker are left."""
+    plugin, ends = tmp_path / "closing.py", tmp_path / "ends"
+    plugin.write_text(gate.source + CLOSING.format(ends=str(ends)))
+    grid = ("robot=macro", "plant=rk4", "duration=0.1", "seed=range(10)", "hydra.sweeper.workers=1")
+    command = [sys.executable, "-m", "runner", "--plugin", f"metric={plugin}", "-m", *grid]
+    process = subprocess.Popen(command, cwd=tmp_path, stdout=-1, stderr=-1, text=True, start_new_session=True)
+    try:
+        gate.next_at()
+        os.killpg(process.pid, signal.SIGINT)
+        gate.open()
+        _, err = process.communicate(timeout=PATIENCE)
+    finally:
+        process.kill()
+    assert process.returncode == 130, err
+    assert ends.read_text() == "a run\n"
+
+
+@pytest.mark.costs(4)
+def test_a_second_ctrl_c_ends_a_sweep_at_once(tmp_path, gate):
+    """A worker is at a run, and the command closes its workers, when it comes; both would wait for ever."""
+    grid = ("robot=macro", "plant=rk4", "duration=0.1", "seed=0,1", "hydra.sweeper.workers=1")
+    words = ("--plugin", gate.metric(ROWS), "-m", *grid)
+    command = gate.command("runner.sweeps.engine:_end_workers", 1, *words)
+    process = subprocess.Popen(command, cwd=tmp_path, stdout=-1, stderr=-1, text=True, start_new_session=True)
+    try:
+        assert gate.next_at() != process.pid
+        os.killpg(process.pid, signal.SIGINT)
+        assert gate.next_at() == process.pid
+        os.killpg(process.pid, signal.SIGINT)
+        process.communicate(timeout=PATIENCE)  # to the end of a pipe that its worker holds, too
+    finally:
+        gate.open()
+        process.kill()
+    assert process.returncode == -signal.SIGINT
+    assert stored(tmp_path / "outputs") == []
 
 
 def test_a_sweep_of_python_s_that_is_interrupted_leaves_whole_runs_and_goes_on(tmp_path, gate, threads, monkeypatch):

@@ -15,7 +15,7 @@ from pathlib import Path
 
 from tools.option_walk.made_up_kinds import made_up_kinds
 from tools.option_walk.scenes import ENGINES, SCENES
-from tools.option_walk.walk import FAULTS, Step, Verdict, Walk, interpreted, steps_of
+from tools.option_walk.walk import FAULTS, Judged, Step, Walk, interpreted, steps_of
 
 
 def main(arguments: Sequence[str] = ()) -> bool:
@@ -37,27 +37,45 @@ def main(arguments: Sequence[str] = ()) -> bool:
         for name in engines:
             rejected = [scene for scene in scenes if not found[name, scene]]
             print(f"{name}: {len(scenes) - len(rejected)} scenes; rejected: {', '.join(rejected) or 'none'}")
+        lost = [
+            scene
+            for scene in scenes
+            if len(engines) == len(ENGINES) and not any(found[name, scene] for name in engines)
+        ]
+        print(*(f"no plant accepts the scene {scene}" for scene in lost), sep="\n")
         steps = [step for own in found.values() for step in own]
         if given.sample:
             steps = random.Random(given.seed).sample(steps, min(given.sample, len(steps)))  # noqa: S311 - no secret
             steps.sort()
         modes = [given.mode] if given.mode else ["compiled", "interpreted"]
-        faults = [fault for mode in modes for fault in judge_all(steps, folder, mode, given.verbose)]
-    return not faults
+        judged = [each for mode in modes for each in judge_all(steps, folder, mode, given.verbose)]
+    print("\n".join(rows_of(judged)))
+    faults = [each for each in judged if each.verdict in FAULTS]
+    print(f"{len(faults)} faults" if faults else "nothing untold is left")
+    return not faults and not lost
 
 
-def judge_all(steps: list[Step], folder: Path, mode: str, verbose: bool = False) -> list[tuple[Step, Verdict, str]]:
-    """Judge changes, print the table of a mode and each fault, and return the faults."""
-    began, walker, counts, faults = time.monotonic(), Walk(folder), dict[str, Counter[str]](), []
+def judge_all(steps: Sequence[Step], folder: Path, mode: str, verbose: bool = False) -> list[Judged]:
+    """Judge changes in a mode, and print each fault; verbose prints each change."""
+    began, walker, judged = time.monotonic(), Walk(folder), []
     with interpreted() if mode == "interpreted" else nullcontext():
         for step in steps:
-            verdict, words = walker.judge(step)
-            counts.setdefault(step.engine, Counter())[verdict] += 1
-            if verdict in FAULTS:
-                faults.append((step, verdict, words))
-            if verdict in FAULTS or verbose:
-                print(f"{verdict:9} {mode}, {step.engine}, {step.scene}: {step.change} {words}", flush=True)
+            judged.append(Judged(step, *walker.judge(step)))
+            if judged[-1].verdict in FAULTS or verbose:
+                print(f"{mode}, {judged[-1]}", flush=True)
     print(f"{mode}: {len(steps)} changes, {time.monotonic() - began:.0f} s")
-    for name, own in counts.items():
-        print(f"  {name:20} " + ", ".join(f"{count} {verdict}" for verdict, count in sorted(own.items())))
-    return faults
+    return judged
+
+
+def rows_of(judged: Sequence[Judged]) -> list[str]:
+    """Return the table of the walk: groups with their kinds, keys and options, plants and verdicts."""
+    groups: dict[str, list[Judged]] = {}
+    for each in judged:
+        groups.setdefault(each.step.key.partition(".")[0], []).append(each)
+    rows = [f"{'group':20}  kinds   keys  plants  verdicts"]
+    for group, own in sorted(groups.items()):
+        kinds, keys, plants = (len({getattr(each.step, name) for each in own}) for name in ("kind", "key", "engine"))
+        counts = sorted(Counter(each.verdict for each in own).items())
+        verdicts = ", ".join(f"{count} {verdict}" for verdict, count in counts)
+        rows.append(f"{group:20}  {kinds:5}  {keys:5}  {plants:6}  {verdicts}")
+    return rows

@@ -8,242 +8,192 @@ from collections.abc import Iterator, Mapping
 from contextlib import contextmanager
 from pathlib import Path
 from types import ModuleType
-from typing import NamedTuple
+from typing import Any, Literal, NamedTuple
 
+import numpy as np
+import pinocchio as pin
+import yaml
+from pydantic import create_model
+
+from runner.base.arrays import FloatArray
 from runner.controllers import CONTROLLERS
-from runner.environments import ENVIRONMENTS
+from runner.controllers.controller import Controller, Loop
+from runner.environments import ENVIRONMENTS, Environment
+from runner.environments.wall import Wall, WallConfig
 from runner.plants import PLANTS
+from runner.plants.plant import Plant
 from runner.plugins.registry import Kinds
-from runner.robots.mismatch import MISMATCHES
+from runner.robots.mismatch import MISMATCHES, MismatchConfig, scale_model
+from runner.robots.model import RobotModel
+from runner.robots.robot import Robot, with_models
+from runner.schema.model import StrictModel
 from runner.sensing import JOINT_TORQUE_SENSORS, NOISES, WRIST_SENSORS
+from runner.sensing.encoders import NoiseConfig
+from runner.sensing.joint_torque import JointTorqueConfig
 from runner.trajectories import TRAJECTORIES
-
-_REGISTRIES: Mapping[str, Kinds] = {
-    kinds.group: kinds
-    for kinds in (
-        NOISES, WRIST_SENSORS, JOINT_TORQUE_SENSORS, MISMATCHES, ENVIRONMENTS, CONTROLLERS, TRAJECTORIES, PLANTS
-    )
-}  # fmt: skip
+from runner.trajectories.motion import quintic_motion
 
 
 class MadeUp(NamedTuple):
     """A made-up kind.
 
     Attributes:
-        group: Config group.
+        kinds: Registry.
         name: Name of the kind, and of its option.
-        keys: Content of its YAML file.
-        module: Source of its module.
+        keys: Its own keys with their values.
+        members: Members of its module beside CONFIG.
+        derived: Model and option of the config that its own is derived from.
     """
 
-    group: str
+    kinds: Kinds
     name: str
-    keys: str
-    module: str
+    keys: Mapping[str, Any]
+    members: Mapping[str, Any]
+    derived: tuple[type[StrictModel], str] = (StrictModel, "")
+
+    @property
+    def option(self) -> str:
+        """The override that chooses it."""
+        return f"{self.kinds.group}={self.name}"
+
+    def module(self) -> ModuleType:
+        """Return its module."""
+        made = ModuleType(f"runner.made_up.{self.name}")
+        fields: dict[str, Any] = {key: (type(value), ...) for key, value in self.keys.items()}
+        model = create_model("Config", __base__=self.derived[0], kind=(Literal[self.name], ...), **fields)
+        vars(made).update(self.members, CONFIG=model)
+        return made
+
+    def text(self) -> str:
+        """Return its YAML file."""
+        defaults = {"defaults": [self.derived[1], "_self_"]} if self.derived[1] else {}
+        return f"# Made up\n{yaml.safe_dump({**defaults, 'kind': self.name, **self.keys}, sort_keys=False)}"
 
 
-_HEAD = """
-from typing import Literal
-import numpy as np
-from runner.schema.model import StrictModel
-"""
-KINDS = (
-    MadeUp("noise", "hysteresis", "width: 0.01\n", _HEAD + """
-class CONFIG(StrictModel):
-    kind: Literal["hysteresis"]
-    width: float
+class _Hysteresis:
+    def __init__(self, width: float) -> None:
+        self._half, self._held = 0.5 * width, None
 
-class Encoders:
-    def __init__(self, config):
-        self.half, self.held = 0.5 * config.width, None
-    def measure(self, tick, q, dq):
-        self.held = q.copy() if self.held is None else np.clip(self.held, q - self.half, q + self.half)
-        return self.held.copy(), dq
+    def measure(self, tick: int, q: FloatArray, dq: FloatArray) -> tuple[FloatArray, FloatArray]:
+        self._held = q.copy() if self._held is None else np.clip(self._held, q - self._half, q + self._half)
+        return self._held.copy(), dq
 
-def build(config, joints, ticks, period, generator):
-    return Encoders(config)
-"""),
-    MadeUp("noise", "shifted", "position: 0.0\ndistribution: none\nvelocity: exact\nshift: 0.01\n", _HEAD + """
-from runner.sensing.encoders import NoiseConfig
 
-class CONFIG(NoiseConfig):
-    kind: Literal["shifted"]
-    shift: float
+class _Shifted:
+    def __init__(self, shift: float) -> None:
+        self._shift = shift
 
-class Encoders:
-    def __init__(self, shift):
-        self.shift = shift
-    def measure(self, tick, q, dq):
-        return q + self.shift, dq
+    def measure(self, tick: int, q: FloatArray, dq: FloatArray) -> tuple[FloatArray, FloatArray]:
+        return q + self._shift, dq
 
-def build(config, joints, ticks, period, generator):
-    return Encoders(config.shift)
-"""),
-    MadeUp("wrist_sensor", "doubled", "gain: 2.0\n", _HEAD + """
-class CONFIG(StrictModel):
-    kind: Literal["doubled"]
-    gain: float
 
-class Sensor:
-    def __init__(self, gain):
-        self.gain = gain
-    def read(self, tick, wrench):
-        return self.gain * wrench
+class _Gained:
+    """A sensor whose reading is proportional to the truth."""
 
-def build(config, ticks, period, generator):
-    return Sensor(config.gain)
-"""),
-    MadeUp("joint_torque_sensor", "weak", "noise: 0.0\nbias: 0.0\ngain: 0.8\n", _HEAD + """
-from runner.sensing.joint_torque import JointTorqueConfig
+    def __init__(self, config: Any, *_: object) -> None:
+        self._gain = config.gain
 
-class CONFIG(JointTorqueConfig):
-    kind: Literal["weak"]
-    gain: float
+    def read(self, tick: int, truth: FloatArray) -> FloatArray:
+        return self._gain * truth
 
-class Sensors:
-    def __init__(self, gain):
-        self.gain = gain
-    def read(self, tick, torque):
-        return self.gain * torque
 
-def build(config, joints, ticks, generator):
-    return Sensors(config.gain)
-"""),
-    MadeUp("mismatch", "heavier", "factor: 1.5\n", _HEAD + """
-from runner.robots.mismatch import scale_model
-from runner.robots.robot import with_models
-
-class CONFIG(StrictModel):
-    kind: Literal["heavier"]
-    factor: float
-
-def build(config, robot, generator):
-    def change(model, joints, bears_payload):
+def _scaled(config: Any, robot: Robot, generator: np.random.Generator) -> Robot:
+    def change(model: RobotModel, joints: object, bears_payload: object) -> RobotModel:
         ones = np.ones(model.nq)
         return scale_model(model, config.factor * ones, ones, np.ones(model.nq + 1))
+
     return with_models(robot, change)
-"""),
-    MadeUp("mismatch", "lighter", "mass: 1.0\ncentre_of_mass: 1.0\nlength: 1.0\ngravity: 1.0\npayload: 0.0\n"
-           "spread: 0.0\nlink: {}\nfactor: 0.5\n", _HEAD + """
-from runner.robots.mismatch import MismatchConfig, scale_model
-from runner.robots.robot import with_models
 
-class CONFIG(MismatchConfig):
-    kind: Literal["lighter"]
-    factor: float
 
-def build(config, robot, generator):
-    def change(model, joints, bears_payload):
-        ones = np.ones(model.nq)
-        return scale_model(model, config.factor * ones, ones, np.ones(model.nq + 1))
-    return with_models(robot, change)
-"""),
-    MadeUp("environment", "spring", "stiffness: 300.0\n", _HEAD + """
-from runner.environments import Environment
+class _Spring(Environment):
+    def __init__(self, config: Any) -> None:
+        self._stiffness, self._start = config.stiffness, np.zeros(3)
 
-class CONFIG(StrictModel):
-    kind: Literal["spring"]
-    stiffness: float
+    def reset(self, tip: FloatArray) -> None:
+        self._start = tip - 0.01
 
-class build(Environment):
-    def __init__(self, config):
-        self.config, self.start = config, np.zeros(3)
-    def reset(self, tip):
-        self.start = tip - 0.01
-    def wrench(self, time, tip, velocity):
-        return np.concatenate([self.config.stiffness * (self.start - tip), np.zeros(3)])
-"""),
-    MadeUp("environment", "sticky_wall", "distance: -0.001\nnormal: [-1.0, 0.0, 0.0]\nstiffness: 1.0e+3\ndamping: 5.0\n"
-           "friction: 0.0\npull: 4.0\n", _HEAD + """
-from runner.environments.wall import Wall, WallConfig
+    def wrench(self, time: float, tip: FloatArray, velocity: FloatArray) -> FloatArray:
+        return np.concatenate([self._stiffness * (self._start - tip), np.zeros(3)])
 
-class CONFIG(WallConfig):
-    kind: Literal["sticky_wall"]
-    pull: float
 
-class build(Wall):
-    def wrench(self, time, tip, velocity):
+class _StickyWall(Wall):
+    def wrench(self, time: float, tip: FloatArray, velocity: FloatArray) -> FloatArray:
         found = super().wrench(time, tip, velocity)
         found[:3] -= self.config.pull * self.normal
         return found
-"""),
-    MadeUp("controller", "soft_pd", "period: 0.002\nstiffness: 40.0\n", _HEAD + """
-from runner.controllers.controller import Controller, Loop
 
-class CONFIG(StrictModel):
-    kind: Literal["soft_pd"]
-    period: float
-    stiffness: float
 
-class SoftPd(Controller):
-    def __init__(self, robot, config):
-        self.robot, self.config = robot, config
-    def torque(self, time, q, dq, reference):
-        model = self.robot.model
-        return model.gravity_torque(q) + self.config.stiffness * (self.robot.home - q) - dq
-    def reset(self):
-        pass
+class _SoftPd(Controller):
+    def __init__(self, robot: Robot, stiffness: float) -> None:
+        self._robot, self._stiffness = robot, stiffness
 
-def build(config, robot):
-    return (Loop(robot.stage_names[-1], slice(0, robot.model.nq), config.period, SoftPd(robot, config)),)
-"""),
-    MadeUp("trajectory", "swing", "duration: 0.4\nwidth: 0.05\n", _HEAD + """
-from runner.trajectories.joint_motion import JointMotion
-from runner.trajectories.motion import quintic_motion
+    def torque(self, time: float, q: FloatArray, dq: FloatArray, reference: object) -> FloatArray:
+        return self._robot.model.gravity_torque(q) + self._stiffness * (self._robot.home - q) - dq
 
-class CONFIG(StrictModel):
-    kind: Literal["swing"]
-    duration: float
-    width: float
+    def reset(self) -> None:
+        """Do nothing: it has no state."""
 
-def joint_motion(config, robot):
-    return quintic_motion(robot.home, robot.home + config.width, config.duration)
-"""),
-    MadeUp("plant", "euler", "step: null\nlag: 0.5\n", _HEAD + """
-import pinocchio as pin
-from runner.plants.plant import Plant
 
-class CONFIG(StrictModel):
-    kind: Literal["euler"]
-    step: float | None
-    lag: float
+def _soft_pd(config: Any, robot: Robot) -> tuple[Loop, ...]:
+    law = _SoftPd(robot, config.stiffness)
+    return (Loop(robot.stage_names[-1], slice(0, robot.model.nq), config.period, law),)
 
-class Euler(Plant):
-    def __init__(self, model, step, steps, lag):
-        self.pin, self.data = model.separate()
-        self.step, self.steps, self.lag = step, steps, lag
-        self.q, self.dq = np.zeros(model.nq), np.zeros(model.nq)
-    def reset(self, q, dq):
+
+class _Euler(Plant):
+    def __init__(self, config: Any, robot: Robot, step: float, steps: int) -> None:
+        self._pin, self._data = robot.model.separate()
+        self._step, self._steps, self._lag = step, steps, config.lag
+        self.q, self.dq = np.zeros(robot.model.nq), np.zeros(robot.model.nq)
+
+    def reset(self, q: FloatArray, dq: FloatArray) -> None:
         self.q[:], self.dq[:] = q, dq
-    def set_gravity(self, gravity):
-        self.pin.gravity.linear = gravity
-    def advance(self, tau):
-        for _ in range(self.steps):
-            before = self.dq.copy()
-            self.dq += self.step * pin.aba(self.pin, self.data, self.q, self.dq, tau)
-            self.q += self.step * (self.lag * before + (1.0 - self.lag) * self.dq)
-    def close(self):
-        pass
 
-def build(config, robot, step, steps):
-    return Euler(robot.model, step, steps, config.lag)
-"""),
+    def set_gravity(self, gravity: FloatArray) -> None:
+        self._pin.gravity.linear = gravity
+
+    def advance(self, tau: FloatArray) -> None:
+        for _ in range(self._steps):
+            before = self.dq.copy()
+            self.dq += self._step * pin.aba(self._pin, self._data, self.q, self.dq, tau)
+            self.q += self._step * (self._lag * before + (1.0 - self._lag) * self.dq)
+
+    def close(self) -> None:
+        """Do nothing: it holds nothing."""
+
+
+KINDS = (
+    MadeUp(NOISES, "hysteresis", {"width": 0.01}, {"build": lambda config, *_: _Hysteresis(config.width)}),
+    MadeUp(
+        NOISES, "shifted", {"shift": 0.01}, {"build": lambda config, *_: _Shifted(config.shift)}, (NoiseConfig, "none")
+    ),
+    MadeUp(WRIST_SENSORS, "doubled", {"gain": 2.0}, {"build": _Gained}),
+    MadeUp(JOINT_TORQUE_SENSORS, "weak", {"gain": 0.8}, {"build": _Gained}, (JointTorqueConfig, "ideal")),
+    MadeUp(MISMATCHES, "heavier", {"factor": 1.5}, {"build": _scaled}),
+    MadeUp(MISMATCHES, "lighter", {"factor": 0.5}, {"build": _scaled}, (MismatchConfig, "none")),
+    MadeUp(ENVIRONMENTS, "spring", {"stiffness": 300.0}, {"build": _Spring}),
+    MadeUp(
+        ENVIRONMENTS, "sticky_wall", {"pull": 4.0},
+        {"build": _StickyWall}, (WallConfig, "wall"),
+    ),
+    MadeUp(CONTROLLERS, "soft_pd", {"period": 0.002, "stiffness": 40.0}, {"build": _soft_pd}),
+    MadeUp(
+        TRAJECTORIES, "swing", {"duration": 0.4, "width": 0.05},
+        {"joint_motion": lambda config, robot: quintic_motion(robot.home, robot.home + config.width, config.duration)},
+    ),
+    MadeUp(PLANTS, "euler", {"step": 0.001, "lag": 0.5}, {"build": _Euler}),
 )  # fmt: skip
 
 
 @contextmanager
 def made_up_kinds(folder: Path) -> Iterator[Path]:
-    """Add the made-up kinds to the registries; their YAML files are written to a folder, which is returned."""
-    names = {kind: f"runner.made_up.{kind.name}" for kind in KINDS}
-    for kind, name in names.items():
-        path = folder / kind.group / f"{kind.name}.yaml"
+    """Add the made-up kinds to the registries; their options are written to a folder, which is returned."""
+    for kind in KINDS:
+        path, module = folder / kind.kinds.group / f"{kind.name}.yaml", kind.module()
         path.parent.mkdir(parents=True, exist_ok=True)
-        path.write_text(f"# Made up\nkind: {kind.name}\n{kind.keys}")
-        sys.modules[name] = module = ModuleType(name)
-        exec(compile(kind.module, name, "exec"), vars(module))  # noqa: S102 - text of this file
-        _REGISTRIES[kind.group]._modules[kind.name] = name
+        path.write_text(kind.text())
+        sys.modules[module.__name__], kind.kinds._modules[kind.name] = module, module.__name__
     try:
         yield folder
     finally:
-        for kind, name in names.items():
-            del _REGISTRIES[kind.group]._modules[kind.name], sys.modules[name]
+        for kind in KINDS:
+            del sys.modules[kind.kinds._modules.pop(kind.name)]

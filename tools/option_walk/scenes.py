@@ -3,6 +3,8 @@
 from collections.abc import Mapping, Sequence
 from typing import Any, NamedTuple
 
+from runner.base.paths import package_dir
+
 ENGINES: Mapping[str, Sequence[str]] = {
     "rk4": ["plant=rk4"],
     "mujoco": ["plant=mujoco"],
@@ -33,6 +35,7 @@ class Scene(NamedTuple):
     options: Sequence[str] = ()
 
 
+_MOTION = package_dir().parent / "examples" / "swing.csv"
 _TIP = "trajectory=quintic trajectory.duration=0.4 duration=0.06 controller.period=0.002"
 _ARM = f"robot=macro {_TIP} controller=operational_space"
 _LAW = f"robot=macro {_TIP}"
@@ -42,6 +45,12 @@ _TOOL = "robot.tool={mass:0.3,centre_of_mass:[0.01,0,0.03],inertia:[1e-3,1e-3,1e
 _IDEAL = "robot=xarm7 controller=differential_inverse_kinematics trajectory=line trajectory.duration=2 duration=0.06"
 _HELD = "robot=meca500 controller=admittance duration=0.06"
 _FEELS = f"{_HELD} {_PUSH}"
+_WALL = "controller=hybrid_force environment.distance=-1e-4 environment.friction=0.2 duration=0.03"
+_SENSOR = (
+    "wrist_sensor=mini40 controller.sensor={range:[20.0,20.0,60.0,1.0,1.0,1.0],resolution:[0.1,0.1,0.1,0.01,0.01,0.01],"
+    "noise:[0,0,0,0,0,0],bias:[0.4,-0.3,0.8,0.01,-0.02,0.01],drift:[0,0,0,0,0,0],low_pass:null,rotation:0.3,height:0.01,"
+    "mass:0.05}"
+)
 _ROUGH = (
     "robot.friction.viscous=1 robot.friction.coulomb=0.5 robot.friction.static=0.8 robot.friction.asymmetry=0.1 "
     "robot.friction.stribeck_speed=0.05 robot.friction.sigmoid={level:1.0,steepness:20.0,shift:0.01}"
@@ -58,7 +67,8 @@ _LAWS = (
 )
 _OWN = "noise=hysteresis", "noise=shifted", "mismatch=heavier", "mismatch=lighter", "mismatch=sampled"
 _SHAPES = {
-    "circle": "", "goal": "", "joint_quintic": "", "joint_sinusoids": "", "joint_waypoints": "", "line": "",
+    "circle": "", "goal": "", "joint_quintic": "", "joint_sinusoids": "", "line": "",
+    "joint_waypoints": "trajectory.configurations=[0.5,0.2,0.6,0.3]",
     "lissajous": "trajectory.amplitudes=[0.02,0.03,0.01]", "quintic": "", "square": "", "waypoints": "",
 }  # fmt: skip
 _FRICTION = ("robot.friction", "plant.friction")
@@ -68,7 +78,7 @@ SCENES: Mapping[str, Scene] = {
     "arm": Scene(
         f"{_ARM} robot.payload.mass=0.5 noise.position=1e-4 torque_limits.max=30",
         ["robot", "plant", "controller", "trajectory", "noise", "torque_limits", "mismatch", "gravity"],
-        [*_FRICTION, "plant.servo", "robot.tool", "robot.joint_error_limit", "robot.rated_payload", "plant.step",
+        [*_FRICTION, "plant.servo", "robot.tool", "robot.joint_error_limit", "robot.settling_band",
          "noise.velocity_bandwidth", *_OF_TASK],
     ),
     "plain": Scene(
@@ -77,13 +87,12 @@ SCENES: Mapping[str, Scene] = {
         [],
         [*_OWN, "noise=thesis", "environment=push", "environment=hand_guiding", "environment=spring",
          "environment=sticky_wall", "controller=soft_pd", "trajectory=swing", "plant=euler", "notch=torques",
-         "disturbance_observer=momentum", "torque_limits=thesis", *(f"controller={law}" for law in _LAWS),
-         *(f"trajectory={shape}" for shape in _SHAPES)],
+         "disturbance_observer=momentum", "torque_limits=thesis"],
     ),
     "ideal": Scene(
         f"{_IDEAL} noise.position=1e-4 robot.payload.mass=0.5",
         ["controller", "trajectory", "robot", "plant", "mismatch", "noise", "torque_limits"],
-        [*_FRICTION, "robot.rated_payload", "plant.step"],
+        _FRICTION,
     ),
     "plain ideal": Scene(
         _IDEAL,
@@ -95,10 +104,14 @@ SCENES: Mapping[str, Scene] = {
     "friction": Scene(f"{_ARM} {_ROUGH}", _FRICTION),
     "servos": Scene(f"{_IDEAL} plant.servo.stiffness=500", ["plant.servo"]),
     "stages": Scene(
-        "robot=combined trajectory=quintic trajectory.duration=0.4 duration=0.03 torque_limits.max.macro=40",
+        "robot=combined trajectory=quintic trajectory.duration=0.4 duration=0.03 torque_limits.max={macro:40,mini:20}",
         ["controller", "plant.dynamics", "plant.wrist_rotation", "torque_limits", "disturbance_observer", "noise"],
-        ["noise.velocity_bandwidth"],
+        ["noise.velocity_bandwidth", "controller.beyond_reach"],
         ["disturbance_observer=momentum"],
+    ),
+    "stages out of reach": Scene(
+        "robot=combined trajectory=quintic trajectory.duration=0.4 duration=0.03 controller.reach=0.01",
+        ["controller.beyond_reach"],
     ),
     "damped stages": Scene(
         "robot=combined trajectory=quintic trajectory.duration=0.4 duration=0.03 controller.coupling=inertial_damping",
@@ -118,8 +131,13 @@ SCENES: Mapping[str, Scene] = {
     "joint_pid": Scene(
         f"{_LAW} controller=joint_pid torque_limits.max=2 noise.position=1e-3", ["controller"], _OF_TASK
     ),
-    "seven joints": Scene(f"{_SEVEN} controller=computed_torque", _OF_TASK),
-    "seven joints, operational space": Scene(f"{_SEVEN} controller=operational_space", _OF_TASK),
+    **{
+        f"seven joints by {law}": Scene(f"{_SEVEN} controller={law}", _OF_TASK)
+        for law in (*_LAWS, "iterative_learning") if law != "impedance"
+    },
+    "seven joints by motor_pd": Scene(
+        f"{_SEVEN} robot.armature=0 controller=motor_pd plant.flexible_joints.static_deflection=unknown", _OF_TASK
+    ),
     "impedance": Scene(f"{_SEVEN} controller=impedance {_PUSH}", ["controller"]),
     "motor_pd": Scene(
         f"{_LAW} controller=motor_pd plant.flexible_joints.static_deflection=unknown", ["controller"], _OF_TASK
@@ -142,12 +160,22 @@ SCENES: Mapping[str, Scene] = {
         ["controller.check_stability", "controller.tip_speed", "controller.limit_approach", "robot.tool.tip_radius",
          "controller.sensor", "noise.velocity_bandwidth"],
     ),
+    "felt by a sensor of its own": Scene(f"{_FEELS} {_TOOL} {_SENSOR}", ["controller.sensor"]),
+    "to a far goal": Scene(f"{_HELD} trajectory=goal", ["controller.tip_speed", "controller.limit_approach"]),
+    "bouncing": Scene(
+        f"{_HELD} {_TOOL} environment=wall environment.stiffness=1e6 environment.distance=-1e-4 "
+        "controller.check_stability=false",
+        ["controller.check_stability", "robot.tool.tip_radius"],
+    ),
     "wall": Scene(
-        "robot=mini controller=hybrid_force environment.distance=-1e-4 environment.friction=0.2 duration=0.03",
+        f"robot=mini {_WALL}",
         ["controller", "environment"],
         ["controller.actuated_stages", "controller.sensor"],
         ["environment=sticky_wall"],
     ),
+    "wall with a sensor of its own": Scene(f"{_WALL} {_SENSOR}", ["controller.sensor"]),
+    "along the wall": Scene(f"robot=mini {_WALL} trajectory=quintic", ["controller.feedforward"]),
+    "wall of stages": Scene(f"robot=combined {_WALL}", ["controller.actuated_stages"]),
     "unfelt": Scene(
         _ARM, ["wrist_sensor", "joint_torque_sensor", "endpoint_sensor", "disturbance_observer.torque", "plant_error",
                "noise.velocity_bandwidth", "robot.path_size", "robot.joint_error_limit",
@@ -160,10 +188,19 @@ SCENES: Mapping[str, Scene] = {
     ),
     "notch": Scene(f"{_ARM} notch=torques", ["notch"]),
     "shaped": Scene(f"{_ARM} input_shaper=zv input_shaper.frequency=8", ["input_shaper"], [], ["input_shaper=zvd"]),
+    "settled": Scene(f"{_LAW} controller=computed_torque robot.settling_band=1.0", ["robot.settling_band"]),
     "noisy as the robot": Scene(
         f"{_ARM} noise=thesis torque_limits=thesis", ["robot.joint_error_limit", "robot.torque_limit"]
     ),
-    "held": Scene(f"{_LAW} controller=held_torques controller.torques=[2,-9,3]", ["controller.torques"]),
+    "held": Scene(f"{_LAW} controller=held_torques controller.torques=[2,-9,3]", ["controller"]),
+    **{
+        law: Scene(f"robot=xarm7 controller={law} duration=0.2 {more}", ["controller"])
+        for law, more in {"three_joint": "", "xarm7_as_printed": "controller.inverse=right"}.items()
+    },
+    "from_file": Scene(
+        f"robot=macro controller=computed_torque trajectory=from_file trajectory.file={_MOTION} duration=0.1",
+        ["trajectory"],
+    ),
     **{
         shape: Scene(f"robot=macro controller=computed_torque trajectory={shape} duration=0.1 {more}", ["trajectory"])
         for shape, more in _SHAPES.items()
@@ -204,6 +241,17 @@ CHANGED: Mapping[str, Any] = {
     "controller.weights": [1.0, 2.0, 1.0, 1.0, 1.0, 1.0, 1.0],
     "wrist_sensor.range": [0.1, 0.1, 0.1, 0.01, 0.01, 0.01],
     "controller.max_tip_speed": 1e-3,
+    "controller.sensor.low_pass": 20.0,
+    "controller.reach": 0.01,
+    "controller.limit_approach": 1e-3,
+    "controller.null_space.posture": [0.1, 0.2, 0.3, 0.4, 0.5, 0.6, 0.7],
+    "endpoint_sensor.read_by": [],
+    "environment.duration": 0.02,
+    "plant.flexible_joints.brake_time": {"macro": 0.02},
+    "trajectory.start_configuration": [0.1, 0.2, 0.3],
+    "trajectory.coefficients": [[[0.1, 0.0], [0.0, 0.05], [0.02, 0.01]]] * 3,
+    "trajectory.origin": [0.5, 0.0, 0.2],
+    "trajectory.time_shares": [0.2, 0.5, 0.8, 1.0],
     "mismatch.link": {"link2": {"mass": 1.4}},
 }
 """Value of a key, where a rule for its type does not suffice."""
@@ -213,6 +261,7 @@ LEFT_OUT: Mapping[str, str] = {
     "robot.mjcf": "another file is another robot",
     "robot.name": "a label",
     "robot.tip": "a name of a frame in the file",
+    "plant.in_place_of": "a label, for a warning",
     "robot.no_joint_error": "0 for each stage, for noise=none",
     "robot.stages": "the keys of each arm; the scene arm changes them",
     "trajectory.columns": "the content of a file",
@@ -220,10 +269,14 @@ LEFT_OUT: Mapping[str, str] = {
 }
 """Keys that the walk does not change, with the reason."""
 
+WITHOUT_PHYSICS = ("preset", "sweep", "limits", "caveats", "spec")
+"""Groups that the walk leaves out: values that other groups take, and keys that change no run."""
+
 _NEAR_SINGULAR = "acts near singular configurations only"
 EXCEPTIONS: Mapping[str, str] = {
     "controller.singularity_damping": _NEAR_SINGULAR,
     "controller.damping": _NEAR_SINGULAR,
+    "bouncing robot.tool.tip_radius": "the wall is as far from the ball as from the tip, unless the plant has the ball",
     "sliding_mode controller.boundary_layer": "cancels within the layer: the gain is proportional to it",
 }
 """Changes without effect that are meant, as SCENE KEY, or KEY in every scene, with the reason."""

@@ -2,25 +2,23 @@
 
 import json
 import sys
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from contextlib import contextmanager
 from dataclasses import fields, is_dataclass
 from functools import cache
 from pathlib import Path
-from typing import Any, Literal, NamedTuple, get_args, get_origin
+from typing import Any, Literal, NamedTuple
 
 import numpy as np
 
 from runner.base.errors import ConfigError
 from runner.config.compose.compose import compose
-from runner.config.groups import GROUPS
-from runner.config.settings import RunSettings
 from runner.config.validation import validate
-from runner.plugins.registry import Kinds
-from runner.schema.model import StrictModel, nested_model
+from runner.plants import PLANTS
 from runner.simulation.run import simulate_run
 from runner.store import run_hash
 from runner.symbolic import engine
+from tools.option_walk.keys import Key, keys_of, known_keys
 from tools.option_walk.scenes import CHANGED, ENGINES, EXCEPTIONS, LEFT_OUT, SCENES, Scene
 
 Verdict = Literal["acts", "reported", "rejected", "excepted", "SILENT", "NOT IN THE HASH", "CRASHED"]
@@ -36,11 +34,35 @@ class Step(NamedTuple):
         scene: Name of the scene.
         engine: Name of the plant.
         change: The override.
+        kind: Group and kind of the key.
     """
 
     scene: str
     engine: str
     change: str
+    kind: str = ""
+
+    @property
+    def key(self) -> str:
+        """The key that it changes."""
+        return self.change.lstrip("+").partition("=")[0]
+
+
+class Judged(NamedTuple):
+    """A change with its verdict.
+
+    Attributes:
+        step: The change.
+        verdict: Its verdict.
+        words: What was reported.
+    """
+
+    step: Step
+    verdict: Verdict
+    words: str
+
+    def __str__(self) -> str:
+        return f"{self.step.engine}, {self.step.scene}: {self.verdict} {self.step.change} {self.words}"
 
 
 class Outcome(NamedTuple):
@@ -75,18 +97,47 @@ def interpreted() -> Iterator[None]:
 
 
 def steps_of(name: str, engine_name: str, folder: Path) -> list[Step]:
-    """Return the changes of a scene on a plant; those of the plainest run if the plant rejects the scene's."""
+    """Return the changes of a scene on a plant; none if the plant rejects the run without a change."""
     scene, base = SCENES[name], base_of(name, engine_name)
     try:
         config = validate(compose(base, [folder]))
     except ConfigError:
         return []
-    found = [option for option in scene.options if option not in base]
-    joint = config.arm.model.joint_names[0]
-    for key, value, allowed in _leaves(config.resolved):
-        if _is_in(key, scene.feels) and not _is_in(key, [*scene.but, *LEFT_OUT]):
-            found += [f"++{key}={_typed(each)}" for each in _others(key, value, allowed, joint)]
-    return [Step(name, engine_name, change) for change in found]
+    options = [(option.replace("=", " "), option) for option in scene.options if option not in base]
+    changes = [
+        (key.kind, f"++{key.name}={_typed(value)}")
+        for key, values in changed_keys(scene, config.resolved, config.arm.model.joint_names[0])
+        for value in values
+    ]
+    return [Step(name, engine_name, change, kind) for kind, change in (*options, *changes)]
+
+
+def changed_keys(scene: Scene, resolved: Mapping[str, Any], first_joint: str) -> Iterator[tuple[Key, Sequence[Any]]]:
+    """Yield the keys of a config that a scene changes, with the values to which they change."""
+    for key in keys_of(resolved):
+        if _is_in(key.name, scene.feels) and not _is_in(key.name, [*scene.but, *LEFT_OUT]):
+            values = _others(key.name, key.value, key.allowed, first_joint)
+            if values:
+                yield key, values
+
+
+def unwalked() -> list[tuple[str, str]]:
+    """Return each kind and key of the walked groups that no scene changes."""
+    walked = set[tuple[str, str]]()
+    for name in SCENES:
+        try:
+            resolved = compose(base_of(name, "rk4")).resolved
+        except ConfigError:
+            resolved = compose(base_of(name, "rk4_flexible")).resolved  # motor_pd takes the springs of the plant
+        walked |= _changed_in(name, resolved)
+    for engine_name in ("bullet", "mujoco", "rk4_flexible", "rk4_flexible_links"):  # each has keys of its own
+        walked |= _changed_in("arm", compose(base_of("arm", engine_name)).resolved)
+    missing = [(kind, key) for kind, key in known_keys() if (kind, key) not in walked and not _is_in(key, LEFT_OUT)]
+    return sorted([*missing, *(("plant", kind) for kind in PLANTS.names() if kind not in ENGINES)])
+
+
+def _changed_in(name: str, resolved: Mapping[str, Any]) -> set[tuple[str, str]]:
+    return {(key.kind, key.name) for key, _ in changed_keys(SCENES[name], resolved, "joint1")}
 
 
 def base_of(name: str, engine_name: str) -> list[str]:
@@ -110,7 +161,6 @@ class Walk:
         """Return the verdict on a change, and what was reported."""
         base = base_of(step.scene, step.engine)
         before = self._kept.get(tuple(base)) or self._kept.setdefault(tuple(base), self._run(base))
-        key = step.change.lstrip("+").partition("=")[0]
         try:
             after = self._run([*base, step.change])
         except Exception as error:  # any other exception is a fault
@@ -120,9 +170,12 @@ class Walk:
         if after.content != before.content:
             same = after.name == before.name
             return ("NOT IN THE HASH", "") if same else ("acts", "")
-        if new := after.reported - before.reported:
+        own = {text for text in after.reported if text.startswith(f"{step.key}: ")}  # the run may report it already
+        if new := (after.reported - before.reported) | own:
             return "reported", "; ".join(sorted(new))
-        reason = EXCEPTIONS.get(f"{step.scene} {key}") or EXCEPTIONS.get(key) or EXCEPTIONS.get(step.change.lstrip("+"))
+        reason = next(
+            (EXCEPTIONS[text] for text in (f"{step.scene} {step.key}", step.key, step.change) if text in EXCEPTIONS), ""
+        )
         return ("excepted", reason) if reason else ("SILENT", "")
 
     def _run(self, overrides: Sequence[str]) -> Outcome:
@@ -133,7 +186,8 @@ class Walk:
             return Outcome("", b"", frozenset(), str(error))
         reported = [*result.provenance["warnings"], *(caveat.text for caveat in result.caveats.caveats)]
         values = {name: list(map(float, summary.values)) for name, summary in result.metrics.items()}
-        content = [*_arrays(result.trace), json.dumps(values, sort_keys=True).encode(), repr(result.failure).encode()]
+        measured = repr((result.failure, result.plant_error, result.rounding)).encode()
+        content = [*_arrays(result.trace), json.dumps(values, sort_keys=True).encode(), measured]
         return Outcome(run_hash(config.resolved, config.arm.urdf), b"".join(content), frozenset(reported))
 
 
@@ -145,47 +199,6 @@ def _arrays(part: Any) -> Iterator[bytes]:
             yield from _arrays(value)
         elif isinstance(value, np.ndarray) and field.name not in _UNCLOCKED:
             yield np.ascontiguousarray(value).tobytes()
-
-
-def _is_in(key: str, groups: Sequence[str]) -> bool:
-    return any(key == group or key.startswith(f"{group}.") for group in groups)
-
-
-def _leaves(resolved: Mapping[str, Any]) -> Iterator[tuple[str, Any, Sequence[Any]]]:
-    """Yield the dotted key, value and allowed words of each key of a config."""
-    for group, content in resolved.items():
-        if group not in GROUPS:
-            field = RunSettings.model_fields.get(group)
-            yield group, content, _words(field.annotation) if field else ()
-            continue
-        known = GROUPS[group]
-        model = known.config_model(content.get("kind", known.default)) if isinstance(known, Kinds) else known
-        yield from _of_model(group, content, model)
-
-
-def _of_model(
-    place: str, content: Mapping[str, Any], model: type[StrictModel]
-) -> Iterator[tuple[str, Any, Sequence[Any]]]:
-    for name, value in content.items():
-        field, key = model.model_fields.get(name), f"{place}.{name}"
-        inner = nested_model(field.annotation) if field else None
-        if field is None or name == "kind":
-            continue
-        if inner is not None and isinstance(value, Mapping) and not _is_dict(field.annotation):
-            yield from _of_model(key, value, inner)
-        else:
-            yield key, value, _words(field.annotation)
-
-
-def _is_dict(annotation: Any) -> bool:
-    return any(get_origin(part) is dict for part in (annotation, *get_args(annotation)))
-
-
-def _words(annotation: Any) -> list[Any]:
-    """Return the words that an annotation allows."""
-    if get_origin(annotation) is Literal:
-        return list(get_args(annotation))
-    return [word for part in get_args(annotation) for word in _words(part)]
 
 
 def _others(key: str, value: Any, allowed: Sequence[Any], first_joint: str) -> list[Any]:
@@ -200,22 +213,28 @@ def _others(key: str, value: Any, allowed: Sequence[Any], first_joint: str) -> l
     return [] if changed is None else [changed]
 
 
+def _is_in(key: str, groups: Iterable[str]) -> bool:
+    return any(key == group or key.startswith(f"{group}.") for group in groups)
+
+
 @cache
 def _number(value: float) -> float:
     return 1.1 * value if value else 0.01
 
 
 def _moved(value: Any) -> Any:
+    """Return a value that differs visibly; None if no rule is known for its type."""
     if isinstance(value, bool):
         return not value
     if isinstance(value, int):
         return value + 1
     if isinstance(value, float):
         return _number(value)
-    if isinstance(value, list) and value and all(isinstance(each, float) for each in value):
-        return [_number(each) for each in value]
-    if isinstance(value, Mapping) and value and all(isinstance(each, float) for each in value.values()):
-        return {name: _number(each) for name, each in value.items()}
+    if isinstance(value, list | Mapping) and value:
+        names = list(value) if isinstance(value, Mapping) else range(len(value))
+        moved = {name: _moved(value[name]) for name in names}
+        if None not in moved.values():
+            return moved if isinstance(value, Mapping) else list(moved.values())
     return None
 
 
@@ -226,6 +245,3 @@ def _typed(value: Any) -> str:
     if isinstance(value, list):
         return "[" + ",".join(map(_typed, value)) + "]"
     return "null" if value is None else str(value).lower() if isinstance(value, bool) else str(value)
-
-
-__all__ = ["FAULTS", "SCENES", "Scene", "Step", "Walk", "interpreted", "steps_of"]

@@ -8,6 +8,10 @@ from runner.config.dependent_keys import depends, idle_keys
 
 IDEAL = ("robot=xarm7", "controller=differential_inverse_kinematics", "plant=kinematic")
 ARM = ("robot=macro", "trajectory=quintic")
+SENSOR = (
+    "controller.sensor={range:[9,9,9,9,9,9],resolution:[0,0,0,0,0,0],noise:[0,0,0,0,0,0],bias:[0,0,0,0,0,0],"
+    "drift:[0,0,0,0,0,0],low_pass:null,rotation:0.1,height:0.01,mass:0.0}"
+)
 IDLE = [
     (IDEAL, "mismatch.mass=1.3", "plant=kinematic"),
     (IDEAL, "mismatch.gravity=0.9", "plant=kinematic"),
@@ -35,6 +39,11 @@ IDLE = [
     (ARM, "robot.friction.sigmoid={level:3}", "friction.sigmoid.steepness"),
     (ARM, "plant.servo.stiffness=10", "controller=operational_space"),
     (ARM, "plant.dynamics=decoupled", "robot=macro"),
+    (("robot=combined",), "controller.damping_gain=5", "controller.coupling"),
+    (("robot=mini", "controller=hybrid_force"), "controller.feedforward=false", "trajectory.kind=goal"),
+    (("robot=meca500", "controller=admittance"), "controller.check_stability=false", "environment"),
+    (("robot=meca500", "controller=admittance", "plant=rk4"), "controller.check_stability=false", "plant=rk4"),
+    (("robot=meca500", "controller=admittance", SENSOR), "++controller.sensor.low_pass=20", "controller.sensor"),
     (ARM, "robot.path_size=0.1", "${robot.path_size}"),
     (ARM, "preset.macro_target=tip_goal", "${preset.macro_target}"),
 ]  # fmt: skip
@@ -42,7 +51,7 @@ IDLE = [
 
 @pytest.mark.parametrize(("run", "override", "on"), IDLE, ids=[override for _, override, _ in IDLE])
 def test_a_key_without_effect_is_told_with_the_key_on_which_it_depends(checked_config, run, override, on):
-    key = override.partition("=")[0].removesuffix("={level:3}")
+    key = override.partition("=")[0].lstrip("+").removesuffix("={level:3}")
     (line,) = [line for line in idle_keys(checked_config(*run, override)) if line.startswith((key, override))]
     assert ": no effect, because " in line
     assert on in line.partition("because")[2]
@@ -65,6 +74,10 @@ ACTING = [
     ((*ARM, "robot.friction.static=2", "robot.friction.stribeck_speed=1"), "robot.friction.stribeck_curve=exponential"),
     ((*ARM, "robot.friction.sigmoid.steepness=30"), "robot.friction.sigmoid.level=3"),
     (("robot=combined",), "plant.dynamics=decoupled"),
+    (("robot=combined", "controller.coupling=inertial_damping"), "controller.damping_gain=5"),
+    (("robot=mini", "controller=hybrid_force", "trajectory=quintic"), "controller.feedforward=false"),
+    (("robot=meca500", "controller=admittance", "environment=wall"), "controller.check_stability=false"),
+    (("robot=meca500", "controller=admittance", SENSOR), "++controller.sensor.bias=[1,0,0,0,0,0]"),
     (ARM, "robot.goal=[0.3,0.1,0.3]"),
     ((*ARM, "trajectory.goal='${robot.start}'", "robot.goal=[0.3,0.1,0.3]"), "robot.start=[0.5,0,0.2]"),
 ]  # fmt: skip
@@ -72,7 +85,7 @@ ACTING = [
 
 @pytest.mark.parametrize(("run", "override"), ACTING, ids=[override for _, override in ACTING])
 def test_a_key_that_acts_is_not_told(checked_config, run, override):
-    key = override.partition("=")[0]
+    key = override.partition("=")[0].lstrip("+")
     assert [line for line in idle_keys(checked_config(*run, override)) if line.startswith(key)] == []
 
 

@@ -9,7 +9,8 @@ from runner.controllers import CONTROLLERS
 from runner.simulation.run import simulate_repetition
 from tools.option_walk import judge_all
 from tools.option_walk.made_up_kinds import KINDS, made_up_kinds
-from tools.option_walk.walk import Step, Walk, interpreted, steps_of
+from tools.option_walk.scenes import SCENES
+from tools.option_walk.walk import FAULTS, Step, Walk, interpreted, steps_of, unwalked
 
 ARM = ("robot=macro", "trajectory=quintic", "trajectory.duration=0.5", "duration=0.3", "controller=computed_torque")
 
@@ -70,18 +71,27 @@ def test_a_joint_motion_of_a_further_trajectory_is_followed(trace):
     np.testing.assert_allclose(moved.q[-1] - moved.q[0], 0.05, atol=1e-4)
 
 
-@pytest.mark.costs(24)
+@pytest.mark.costs(16)
 def test_no_option_is_without_effect_and_untold(folder):
     """A bounded share of `python -m tools.option_walk`."""
-    options = {kind.group: f"{kind.group}={kind.name}" for kind in KINDS}
+    options = {kind.kinds.group: kind.option for kind in KINDS}
     steps = [step for plant in ("rk4", "kinematic") for step in steps_of(f"plain{IDEAL[plant]}", plant, folder)]
     steps += steps_of("friction", "rk4", folder)
-    assert {step.change for step in steps} >= {options["noise"], options["mismatch"], options["plant"]}
-    assert judge_all(steps, folder, "compiled") == []
-    assert judge_all(steps_of("plain", "mujoco", folder)[:8], folder, "interpreted") == []
+    assert {step.change for step in steps} >= {options[group] for group in ("noise", "mismatch", "plant", "trajectory")}
+    judged = judge_all(steps, folder, "compiled")
+    judged += judge_all(steps_of("plain", "mujoco", folder)[:8], folder, "interpreted")
+    assert [str(each) for each in judged if each.verdict in FAULTS] == []
 
 
 IDEAL = {"rk4": "", "kinematic": " ideal"}
+
+
+@pytest.mark.costs(10)
+def test_every_kind_and_key_has_a_scene_that_changes_it(monkeypatch):
+    """A new kind or key needs one in `tools/option_walk/scenes.py`."""
+    assert unwalked() == []
+    monkeypatch.setattr("tools.option_walk.walk.SCENES", {"arm": SCENES["arm"]})
+    assert {("notch", "notch.width"), ("controller whole_body", "controller.period")} < {*unwalked()}
 
 
 def test_the_walk_finds_what_has_no_effect(folder, monkeypatch):
