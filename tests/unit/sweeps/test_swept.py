@@ -48,6 +48,11 @@ def test_the_last_values_of_a_key_count():
     assert key.values == [3]
 
 
+def test_the_last_option_of_a_group_follows_lists_with_mappings():
+    line = ["torque_limits=none,thesis", "torque_limits=none,{max:40}", "torque_limits=thesis"]
+    assert [key.values for key in keys(*line)] == [["none", {"max": 40}], ["thesis"]]
+
+
 @pytest.mark.parametrize("argument", ["seed=range(3,3)", "robot=glob(q*)"])
 def test_an_empty_axis_is_named(argument):
     name = argument.partition("=")[0]
