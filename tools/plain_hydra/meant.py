@@ -57,7 +57,7 @@ MEANT = (
     Meant(r"params=\{noise: '.*noise=\{", _BOTH),
     Meant(r"\b([\w.]+)=\{.*\b\1=", "mappings of one key are merged, as in a single run"),
     Meant(
-        r"\b([\w.]+)\.(\w+)=.*\b\1=\{.*\b\1\.\2=",
+        r"\b([\w.]+)\.(\w+)=.*\b\1=[^|]*\{.*\b\1\.\2=",
         "a value after a mapping of its group wins, as in a single run; Hydra keeps the first place of a repeated key",
     ),
     Meant(
