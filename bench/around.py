@@ -68,7 +68,7 @@ def main() -> bool:
             )
             for run, record in enumerate(records)
         ]
-        write_shard(outputs, shard_name(1, 1), rows)
+        write_shard(outputs, shard_name(1, "bench", 1), rows)
 
     print(f"CPU time a run of {len(trace.t) - 1} ticks, {_RUNS} at once, quickest of {_TIMES}")
     with tempfile.TemporaryDirectory() as folder:

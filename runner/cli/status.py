@@ -18,6 +18,7 @@ def run(options: Namespace) -> int:
     """Print the numbers of runs that are done, failed, left or have caveats, and the command that continues."""
     from runner.base.quantities import format_duration
     from runner.store import open_sweep
+    from runner.sweeps.at_work import in_words
     from runner.sweeps.status import find_status
 
     sweep = open_sweep(options.folder)
@@ -30,7 +31,8 @@ def run(options: Namespace) -> int:
         with_some = sum(count > 0 for count in status.caveats)
         print(f"{with_some} of {len(status.caveats)} stored cells have caveats; `runner table` says which")
     if status.left and status.at_work:
-        print("at work" + ("" if status.seconds is None else f", about {format_duration(status.seconds)} to go"))
+        to_go = "" if status.seconds is None else f", about {format_duration(status.seconds)} to go"
+        print(f"at work ({in_words(status.at_work)}){to_go}")
     elif status.left:
         print(f"not at work; continue with: {sweep.command}")
     return 0

@@ -69,7 +69,8 @@ def on_cluster(queue: Queue, client: Any) -> Generator[Report]:
             suspects.add(suspect.name)
             submit(suspect)
 
-    topic = f"ticks-{queue.rules.sweep.name}"
+    # Topics and keys are global in a scheduler: the same key of two commands is one task.
+    topic = f"ticks-{queue.rules.command}"
     client.subscribe_topic(topic, lambda event: queue.tell(*event[1]))
     try:
         fill()

@@ -129,6 +129,6 @@ class Queue:
             names = [self._names[cell] for cell in own]
             self._under_way |= dict(zip(names, own, strict=True))
             parts.append(Part(names, configs))
-        name = shard_name(self._number, self._handed_out)
+        name = shard_name(self._number, self.rules.command, self._handed_out)
         self._ticks_of[name] = 0
         return Chunk(name, self.rules, parts)

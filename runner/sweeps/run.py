@@ -25,6 +25,7 @@ from runner.store.atomic import remove_leftovers
 from runner.store.finished import FINER
 from runner.store.kinds import note
 from runner.store.names import Names
+from runner.sweeps.at_work import at_work, commands_at_work, commands_in
 from runner.sweeps.check import Checked, check
 from runner.sweeps.differing import Resolved
 from runner.sweeps.engine import in_process, local_client, on_cluster, remote_client
@@ -32,11 +33,11 @@ from runner.sweeps.estimate import START_UP, Estimate, Pace, estimate
 from runner.sweeps.outcomes import Ends
 from runner.sweeps.plan import Grid, Plan
 from runner.sweeps.queue import Queue
-from runner.sweeps.status import at_work
 from runner.sweeps.work import Report, find_calibrated
 from runner.sweeps.writer import Rules, TraceKeeping, one_in
 
 _DAMAGE_SHOWN = 10
+_SCRATCH = "scratch-"
 _ALL_TRACES_UP_TO = 3000  # runs; with more, sweep.trace=auto is sample
 
 
@@ -114,16 +115,16 @@ def run_sweep(plan: Plan, engine: Engine, command: str, accept_cut_short: bool =
     Raises:
         ConfigError: if a cell cannot be run, or the sweep exceeds a limit; no run has been started.
         StoreError: if a result cannot be written, or a worker fails.
-        RunnerError: if another sweep is at work in the same folder, or the Dask scheduler does not answer.
+        RunnerError: if the Dask scheduler does not answer.
     """
     checked = check(plan)
     names, outputs = checked.names, checked.outputs
     progress.begin("looking for stored runs")
     store.prepare(outputs)
-    with at_work(outputs):
-        folder = _write_sweep(plan, checked, command)
+    folder = _write_sweep(plan, checked, command)
+    with at_work(folder) as name:
         note(folder)
-        rules = replace(make_rules(checked.first.sweep, folder, len(names)), accept_cut_short=accept_cut_short)
+        rules = replace(make_rules(checked.first.sweep, folder, len(names), name), accept_cut_short=accept_cut_short)
         ends, stored = make_missing(plan, checked, rules, engine)
     failed = [(cell, ends[names[cell]]) for cell in ends.failed.tolist()]
     failures = [(plan.overrides(cell), end.failure, rules.details(end.name)) for cell, end in failed]
@@ -132,8 +133,6 @@ def run_sweep(plan: Plan, engine: Engine, command: str, accept_cut_short: bool =
 
 def make_missing(plan: Plan, checked: Checked, rules: Rules, engine: Engine) -> tuple[Ends, int]:
     """Execute the missing runs and calibrations of a checked plan; return the outcomes and the number of cached ones.
-
-    The caller holds the lock of the outputs folder.
 
     Raises:
         ConfigError: if the jobs exceed a limit of CPU time or memory.
@@ -167,8 +166,8 @@ def _write_sweep(plan: Plan, checked: Checked, command: str) -> Path:
     return store.write_sweep(checked.outputs, runs, command, checked.first.spec.metrics)
 
 
-def make_rules(settings: SweepConfig, folder: Path, runs: int) -> Rules:
-    """Return the rules for a number of runs of a sweep in a folder."""
+def make_rules(settings: SweepConfig, folder: Path, runs: int, command: str) -> Rules:
+    """Return the rules for a number of runs of a sweep in a folder; `command` is the name of at_work."""
     automatic: TraceKeeping = "all" if runs <= _ALL_TRACES_UP_TO else "sample"
     folder = folder.resolve()
     return Rules(
@@ -179,6 +178,7 @@ def make_rules(settings: SweepConfig, folder: Path, runs: int) -> Rules:
         settings=settings,
         accept_cut_short=settings.retry == "none",
         one_in=one_in(runs),
+        command=command,
     )
 
 
@@ -311,16 +311,23 @@ def _tell(text: str) -> None:
 
 
 def _scratch(rules: Rules) -> Path:
-    return rules.sweep / "scratch"
+    return rules.sweep / f"{_SCRATCH}{rules.command}"
 
 
 def clean(rules: Rules, names: Sequence[str]) -> None:
-    """Remove temporary files and folders without metrics that killed processes of this or an earlier sweep left."""
-    shutil.rmtree(_scratch(rules), ignore_errors=True)
+    """Remove temporary files and folders without metrics that killed processes of this or an earlier command left.
+
+    If another command is at work in the outputs folder, run folders stay, because it may be writing one of them.
+    """
+    others = {f"{_SCRATCH}{command.name}" for command in commands_at_work(rules.sweep)} - {_scratch(rules).name}
+    for folder in rules.sweep.glob(f"{_SCRATCH}*"):
+        if folder.name not in others:
+            shutil.rmtree(folder, ignore_errors=True)
     runs = rules.outputs / "runs"
     for folder in (rules.sweep, rules.sweep / "logs", rules.outputs / "shards", rules.outputs / FINER, runs):
         remove_leftovers(folder)
-    there = {entry.name for entry in os.scandir(runs)} if runs.is_dir() else set()
+    is_alone = len(commands_in(rules.outputs)) <= 1
+    there = {entry.name for entry in os.scandir(runs)} if is_alone and runs.is_dir() else set()
     for name in there.intersection(names):
         folder = runs / name
         remove_leftovers(folder)

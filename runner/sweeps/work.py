@@ -136,7 +136,7 @@ def find_stored(chunk: Chunk) -> dict[str, store.Outcome]:
 
     Damaged results are left out.
     """
-    found, outputs = {}, chunk.rules.outputs
+    found, outputs, names = {}, chunk.rules.outputs, set(chunk.names)
     for part in chunk.parts:
         find = find_calibrated if part.configs[0].root == CALIBRATION else store.find_outcome
         for name in part.names:
@@ -146,7 +146,7 @@ def find_stored(chunk: Chunk) -> dict[str, store.Outcome]:
                     found[name] = end
     for shard in find_shards(outputs, chunk.name):
         with contextlib.suppress(store.DamagedError):
-            found |= {end.name: end for end in read_outcomes(shard)}
+            found |= {end.name: end for end in read_outcomes(shard) if end.name in names}
     return found
 
 

@@ -88,5 +88,9 @@ def test_a_tuning_that_is_killed_ends_as_if_it_had_not_been(tuned, tmp_path, gat
     assert len(journal.read_text().splitlines()) == 1 + 2 + 2
     other = tuned(FREQUENCY, DAMPING, f"outputs={tmp_path}/killed", trials=12)
     assert other.trials == whole.trials
-    assert not [*(tmp_path / "killed").rglob("*.tmp"), *(tmp_path / "killed").rglob("scratch")]
+    assert not [
+        *(tmp_path / "killed").rglob("*.tmp"),
+        *(tmp_path / "killed").rglob("scratch*"),
+        *(tmp_path / "killed").rglob("at_work-*"),
+    ]
     assert replace(other, folder=whole.folder) == whole

@@ -20,10 +20,10 @@ from runner.config.compose.overrides import prepare
 from runner.store.axes import is_simulated
 from runner.store.kinds import note
 from runner.store.names import Names
+from runner.sweeps.at_work import at_work
 from runner.sweeps.check import Checked, check
 from runner.sweeps.plan import Grid, Item, Listed, Plan
 from runner.sweeps.run import Engine, clean, make_jobs, make_missing, make_rules
-from runner.sweeps.status import at_work
 from runner.sweeps.tuning.journal import Journal
 from runner.sweeps.tuning.key import RANGES, Key, read_key
 from runner.sweeps.tuning.objective import Objective, Trial, best
@@ -54,7 +54,7 @@ def tune(
 
     Raises:
         ConfigError: if a key cannot be tuned, or a config in its range cannot be run; no trial has been started.
-        RunnerError: if there are too many trials, a run lacks a metric, another sweep uses the outputs folder, or the
+        RunnerError: if there are too many trials, a run lacks a metric, another command works on the tuning, or the
             Dask scheduler does not answer.
         StoreError: if a result cannot be written, or a worker fails.
     """
@@ -71,10 +71,9 @@ def tune(
     study = Study(shown, keys, objectives, at_once, command)
     seed = cast(int, plan.composed(0).resolved["seed"])
     store.prepare(checked.outputs)
-    with at_work(checked.outputs):
-        folder = study.folder(checked.outputs, checked.names)
-        rules = replace(make_rules(checked.first.sweep, folder, trials), trace="all")
-        folder.mkdir(parents=True, exist_ok=True)
+    folder = study.folder(checked.outputs, checked.names)
+    with at_work(folder, alone=True) as name:
+        rules = replace(make_rules(checked.first.sweep, folder, trials, name), trace="all")
         journal = Journal(folder / JOURNAL, keys, objectives)
         study.write(folder, journal.trials)
         note(folder)

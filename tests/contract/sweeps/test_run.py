@@ -20,6 +20,7 @@ from runner.base.errors import ConfigError, RunnerError, StoreError
 from runner.config.limits import SweepConfig
 from runner.simulation.compiled.loops import CompiledLoops
 from runner.simulation.loop import InterpretedLoops
+from runner.sweeps import run as execution
 from runner.sweeps import work
 from runner.sweeps.deadline import TimeLimitError
 from runner.sweeps.estimate import Estimate
@@ -227,24 +228,29 @@ def test_outputs_are_one_folder_for_all(sweep, tmp_path):
         sweep(f"outputs={tmp_path}/a,{tmp_path}/b")
 
 
-def test_a_second_sweep_says_that_the_first_is_at_work(sweep, threads, monkeypatch):
+@pytest.mark.parametrize("trace", ["all", "never"])
+@pytest.mark.parametrize("second", ["seed=0,1", "seed=2,3", "seed=1,2"], ids=["equal", "disjoint", "overlapping"])
+def test_a_second_sweep_begins_and_ends_while_the_first_is_at_work(sweep, threads, monkeypatch, trace, second):
     begun, done = threading.Event(), threading.Event()
-    make = work._make
+    begin = execution._find_stored
 
     def wait(*arguments):
-        begun.set()
-        assert done.wait(PATIENCE)
-        return make(*arguments)
+        found = begin(*arguments)
+        if not begun.is_set():
+            begun.set()
+            assert done.wait(PATIENCE)
+        return found
 
-    monkeypatch.setattr(work, "_make", wait)
-    monkeypatch.setattr("runner.sweeps.status._PATIENCE", 0.1)
-    first = threads.submit(sweep, "seed=0,1")
+    monkeypatch.setattr(execution, "_find_stored", wait)
+    keep = f"sweep.trace={trace}"
+    first = threads.submit(sweep, "seed=0,1", keep)
     assert begun.wait(PATIENCE)
-    with pytest.raises(RunnerError, match="another sweep is at work in"):
-        sweep("seed=0,1")
+    ended = sweep(second, keep)
+    assert (ended.left, len(runs(ended))) == (0, 2)
     done.set()
-    assert first.result(PATIENCE).left == 0
-    assert len(runs(sweep("seed=0,1"))) == 2
+    assert (first.result(PATIENCE).left, len(runs(first.result(PATIENCE)))) == (0, 2)
+    for seeds, count in (("seed=0,1", 2), ("seed=0,1,2,3", len({0, 1, *map(int, second[5:].split(","))}))):
+        assert sweep(seeds, keep).stored == count
 
 
 @pytest.mark.parametrize("trace", ["all", "never"])
@@ -280,11 +286,11 @@ def test_what_killed_processes_left_is_removed_from_runs_that_are_stored_too(swe
     ended = sweep("seed=0,1")
     host, dead = socket.gethostname(), subprocess.Popen(["true"])
     dead.wait(PATIENCE)
-    for folder in (runs(ended)[0].folder, ended.folder, ended.folder / "scratch"):
+    for folder in (runs(ended)[0].folder, ended.folder, ended.folder / "scratch-1234"):
         folder.mkdir(exist_ok=True)
         (folder / f".metrics.json.{host}.{dead.pid}.tmp").touch()
     assert sweep("seed=0,1") == ended
-    assert [path for path in tmp_path.rglob("*") if path.name.startswith(".") or path.name == "scratch"] == []
+    assert [path for path in tmp_path.rglob("*") if path.name.startswith(".") or path.name.startswith("scratch")] == []
 
 
 @pytest.mark.parametrize("workers", [-1, 1.5, "two", True])
