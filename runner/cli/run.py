@@ -260,9 +260,11 @@ def _print_cells(ended: "Ended", axes: "Sequence[Axis]") -> None:
 
     made, failed = len(ended.ends) - ended.stored, len(ended.failures)
     runs = "1 run" if len(ended.ends) == 1 else f"{len(ended.ends)} runs"
+    if ended.part:
+        runs = f"part {ended.part}: {runs}"
     text = f"{runs}: {made} made, {ended.stored} stored before, {failed or 'none'} of them failed"
     answer, spec = "", ""
-    if len(ended.names) <= _MOST_RANKED and not (ended.left or failed == len(ended.names)):
+    if len(ended.names) <= _MOST_RANKED and not (ended.part or ended.left or failed == len(ended.names)):
         sweep = store.open_sweep(ended.folder)
         work_out_sweep(sweep)
         subject = choose(measure_sweep(sweep))
@@ -275,6 +277,9 @@ def _print_cells(ended: "Ended", axes: "Sequence[Axis]") -> None:
         print(one_line(f"runner: {line}"), file=sys.stderr)
     here = ended.outputs.resolve() == outputs_dir().resolve()
     name = WORD if here else str(ended.folder)
+    if ended.part:
+        print(one_line(f"runner: next: `runner status {name}`"), file=sys.stderr)
+        return
     compared = next((axis.name for axis in axes if axis.name != "seed"), None)
     compare = f", `runner compare {name} --by {compared}`" if compared else ""
     print(one_line(f"runner: next: `runner report {name}`, `runner table {name}`{compare}"), file=sys.stderr)

@@ -34,5 +34,5 @@ def run(options: Namespace) -> int:
         to_go = "" if status.seconds is None else f", about {format_duration(status.seconds)} to go"
         print(f"at work ({in_words(status.at_work)}){to_go}")
     elif status.left:
-        print(f"not at work; continue with: {sweep.command}")
+        print(f"not at work; continue with: {sweep.continuation}")
     return 0

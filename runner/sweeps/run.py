@@ -31,6 +31,7 @@ from runner.sweeps.differing import Resolved
 from runner.sweeps.engine import in_process, local_client, on_cluster, remote_client
 from runner.sweeps.estimate import START_UP, Estimate, Pace, estimate
 from runner.sweeps.outcomes import Ends
+from runner.sweeps.part import Part, own_part, share_sweep
 from runner.sweeps.plan import Grid, Plan
 from runner.sweeps.queue import Queue
 from runner.sweeps.work import Report, find_calibrated
@@ -71,6 +72,7 @@ class Ended:
         left: Number of runs that are missing because the sweep stopped at the first failure.
         stored: Number of cached runs.
         resolved: Values that differ between the configs of the runs.
+        part: Part of the sweep that the other attributes but the folder describe, as K/N; empty for the whole.
     """
 
     folder: Path
@@ -81,6 +83,7 @@ class Ended:
     left: int
     stored: int = field(compare=False)
     resolved: Resolved = field(compare=False)
+    part: str = ""
 
 
 def sweep_typed(
@@ -117,18 +120,20 @@ def run_sweep(plan: Plan, engine: Engine, command: str, accept_cut_short: bool =
         StoreError: if a result cannot be written, or a worker fails.
         RunnerError: if the Dask scheduler does not answer.
     """
+    whole, plan = plan, own_part(plan)
     checked = check(plan)
     names, outputs = checked.names, checked.outputs
     progress.begin("looking for stored runs")
     store.prepare(outputs)
-    folder = _write_sweep(plan, checked, command)
+    folder = share_sweep(plan, checked, command) if isinstance(plan, Part) else _write_sweep(plan, checked, command)
     with at_work(folder) as name:
         note(folder)
-        rules = replace(make_rules(checked.first.sweep, folder, len(names), name), accept_cut_short=accept_cut_short)
+        rules = replace(make_rules(checked.first.sweep, folder, len(whole), name), accept_cut_short=accept_cut_short)
         ends, stored = make_missing(plan, checked, rules, engine)
     failed = [(cell, ends[names[cell]]) for cell in ends.failed.tolist()]
     failures = [(plan.overrides(cell), end.failure, rules.details(end.name)) for cell, end in failed]
-    return Ended(folder, outputs, names, ends, failures, len(ends.left), stored, checked.resolved)
+    part = plan.name if isinstance(plan, Part) else ""
+    return Ended(folder, outputs, names, ends, failures, len(ends.left), stored, checked.resolved, part)
 
 
 def make_missing(plan: Plan, checked: Checked, rules: Rules, engine: Engine) -> tuple[Ends, int]:

@@ -68,6 +68,8 @@ def tune(
     _check_numbers(Grid(shared, loader), keys)
     plan, checked = _check_ranges(loader, shared, keys)
     shown = [text for text in shared if is_simulated(text)]
+    if checked.first.sweep.part is not None:
+        raise ConfigError("sweep.part: a tuning has no parts, because its trials follow from each other; leave it out")
     study = Study(shown, keys, objectives, at_once, command)
     seed = cast(int, plan.composed(0).resolved["seed"])
     store.prepare(checked.outputs)

@@ -28,7 +28,7 @@ from runner.sweeps.run import Engine
 from runner.sweeps.writer import one_in
 from runner.symbolic.engine import evaluator
 
-SETTINGS = SweepConfig(trace="auto", retry="none", on_failure="continue", attempts=1, time_limit=None)
+SETTINGS = SweepConfig(trace="auto", retry="none", on_failure="continue", attempts=1, time_limit=None, part=None)
 
 DIVERGES = ("plant=rk4", "controller.singularity_damping=0", "trajectory=quintic", "duration=1")
 PERIODS = "controller.period=0.01,0.06"  # the second one diverges

@@ -19,9 +19,9 @@ OTHERS = {
     "studies", "study", "sweeps/at_work.py", "sweeps/batch.py", "sweeps/check.py",
     "sweeps/closed_nodes.py", "sweeps/deadline.py",
     "sweeps/differing.py", "sweeps/engine.py", "sweeps/estimate.py", "sweeps/finer_step.py", "sweeps/gathering.py",
-    "sweeps/job.py", "sweeps/measurements.py", "sweeps/outcomes.py", "sweeps/plan.py", "sweeps/queue.py",
-    "sweeps/run.py", "sweeps/status.py", "sweeps/swept.py", "sweeps/table.py", "sweeps/template.py", "sweeps/tuning",
-    "sweeps/work.py", "sweeps/writer.py", "symbolic/cache.py",
+    "sweeps/job.py", "sweeps/measurements.py", "sweeps/outcomes.py", "sweeps/part.py", "sweeps/plan.py",
+    "sweeps/queue.py", "sweeps/run.py", "sweeps/status.py", "sweeps/swept.py", "sweeps/table.py", "sweeps/template.py",
+    "sweeps/tuning", "sweeps/work.py", "sweeps/writer.py", "symbolic/cache.py",
 }  # fmt: skip
 TREE = {
     "laws/__init__.py": 'from runner.laws.pd import Law\nKINDS = {"pd": "runner.laws.pd"}\n',

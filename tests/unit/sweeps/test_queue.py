@@ -11,7 +11,7 @@ from runner.sweeps.queue import Queue
 from runner.sweeps.work import Report
 from runner.sweeps.writer import Rules
 
-SETTINGS = SweepConfig(trace="auto", retry="none", on_failure="continue", attempts=1, time_limit=None)
+SETTINGS = SweepConfig(trace="auto", retry="none", on_failure="continue", attempts=1, time_limit=None, part=None)
 
 
 def alike(cells):
