@@ -5,7 +5,7 @@ BIN := $(VENV)/bin
 # A .venv that is there may have any version, unless PYTHON asks for one.
 ANY_VERSION := $(if $(filter file,$(origin PYTHON)),--any-version)
 
-.PHONY: install reproduce test test-pages test-study test-slow test-busy record test-lowest test-wheel mutants coverage-map lint types docs
+.PHONY: install reproduce test test-pages test-study test-slow test-busy record test-lowest test-next test-wheel mutants coverage-map lint types docs
 .PHONY: pins release-notes bench checks clean
 
 install:
@@ -51,6 +51,15 @@ test-lowest: install
 	$(BIN)/uv pip install --quiet --python build/lowest/bin/python --resolution lowest-direct --editable '.[dev]'
 	build/lowest/bin/python -m pytest -W default tests/physics/simulation/test_closed_forms.py \
 		tests/contract/api tests/contract/store tests/physics/plants
+
+# The next versions of Hydra, OmegaConf and Optuna, whose pins are set aside, in build/next.
+NEXT := hydra-core==1.4.0rc3 omegaconf==2.4.1rc1
+test-next: install
+	$(BIN)/uv venv --quiet --clear --python $(BIN)/python build/next
+	$(BIN)/uv pip install --quiet --python build/next/bin/python --constraint constraints.txt --editable '.[dev]'
+	$(BIN)/uv pip install --quiet --python build/next/bin/python --prerelease allow --upgrade-package optuna $(NEXT) optuna
+	build/next/bin/python -m pytest tests/unit/config tests/unit/sweeps tests/contract/config tests/contract/sweeps \
+		tests/contract/cli
 
 # The wheel in an environment of its own, build/wheel, away from the checkout.
 test-wheel: install

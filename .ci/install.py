@@ -1,7 +1,7 @@
 """Make .venv, or fix it: `make install` runs this, with the Python that .venv is to have where one was asked for.
 
 Else it looks for a Python 3.11, for which there are wheels of PyBullet, and next for the newest that is supported. It
-runs itself on any Python 3.6 or newer, to say which one is needed. A .venv that is sound stays; one whose Python is
+runs itself on any Python 3.6 or newer, to say which are supported. A .venv that is sound stays; one whose Python is
 gone or too old, or that was moved (its scripts name the folder that they were made in), is made again.
 """
 
@@ -14,8 +14,7 @@ import sys
 from pathlib import Path
 
 ROOT = Path(__file__).resolve().parent.parent
-NEEDED = (3, 11)
-SUPPORTED = ((3, 11), (3, 13), (3, 12))  # in the order in which one is looked for
+SUPPORTED = ((3, 11), (3, 14), (3, 13), (3, 12))  # in the order in which one is looked for
 WHEELS_OF_PYBULLET = (3, 11)  # up to this version
 HASHED = ("--require-hashes", "--no-build-isolation", "--requirement")
 _NO_NETWORK = re.compile(
@@ -71,7 +70,7 @@ def why_anew(venv: Path, any_version: bool) -> str:
     found = version_of(venv / "bin" / "python")
     if found is None:
         return "its Python is gone"
-    if found < NEEDED or not (any_version or found == sys.version_info[:2]):
+    if found < min(SUPPORTED) or not (any_version or found == sys.version_info[:2]):
         return f"it has Python {dotted(found)}"
     pip = venv / "bin" / "pip"
     named = re.search(r"(/.*?)/bin/python", pip.read_text(errors="replace")) if pip.is_file() else None
@@ -129,11 +128,13 @@ def version_of(python: Path, modules: str = "sys") -> "tuple | None":
 
 
 def require(version: tuple, python: str) -> None:
-    """Check that a Python is new enough."""
-    if version < NEEDED:
+    """Check that a Python is supported."""
+    oldest, newest = min(SUPPORTED), max(SUPPORTED)
+    if not oldest <= version <= newest:
+        why = ", for which pin (Pinocchio) has no wheel" if version > newest else ""
         raise InstallError(
-            f"Python {dotted(NEEDED)} or newer is needed, and {python} is {dotted(version)}; name another one, as in "
-            f"make install PYTHON=python{dotted(NEEDED)}"
+            f"Python {dotted(oldest)} to {dotted(newest)} is needed, and {python} is {dotted(version)}{why}; name "
+            f"another one, as in make install PYTHON=python{dotted(oldest)}"
         )
 
 

@@ -33,8 +33,13 @@ _RUNS, _TIMES = 256, 30
 _OVERRIDES = ("robot=macro", "plant=rk4", "trajectory=quintic", "noise=thesis", "torque_limits=thesis")
 
 
-def main() -> bool:
-    """Measure and print; return whether every target is met."""
+def main(rounds: int | None = None) -> bool:
+    """Measure and print; return whether every target is met.
+
+    Args:
+        rounds: Number of rounds; None for _TIMES.
+    """
+    times = rounds or _TIMES
     config = validate(compose(_OVERRIDES))
     loop, context = assemble(config), metric_context(config)
     trace = simulate(loop, make_encoders(loop, config.noise, 0, 0))
@@ -70,14 +75,14 @@ def main() -> bool:
         ]
         write_shard(outputs, shard_name(1, "bench", 1), rows)
 
-    print(f"CPU time a run of {len(trace.t) - 1} ticks, {_RUNS} at once, quickest of {_TIMES}")
+    print(f"CPU time a run of {len(trace.t) - 1} ticks, {_RUNS} at once, quickest of {times}")
     with tempfile.TemporaryDirectory() as folder:
         seeds = [[0, run, 0] for run in range(_RUNS)]
         met = [
-            _judge("encoder noise", lambda: encoder_errors([config.noise] * _RUNS, seeds, len(trace.t)), 0.02),
-            _judge("metrics", lambda: measure(traces, context), 0.06),
-            _judge("caveats", lambda: [watch.found() for watch in look()], 0.03),
-            _judge("records and shard", lambda: store(Path(folder)), 0.12),
+            _judge("encoder noise", lambda: encoder_errors([config.noise] * _RUNS, seeds, len(trace.t)), 0.02, times),
+            _judge("metrics", lambda: measure(traces, context), 0.06, times),
+            _judge("caveats", lambda: [watch.found() for watch in look()], 0.03, times),
+            _judge("records and shard", lambda: store(Path(folder)), 0.12, times),
         ]
     return all(met)
 
@@ -95,8 +100,8 @@ def _varied(one: Trace) -> Trace:
     )
 
 
-def _judge(what: str, part: Callable[[], object], target: float) -> bool:
-    found = min(_clocked(part) for _ in range(_TIMES)) / _RUNS * 1e3
+def _judge(what: str, part: Callable[[], object], target: float, times: int) -> bool:
+    found = min(_clocked(part) for _ in range(times)) / _RUNS * 1e3
     print(f"  {what:20} {found:.3f} ms  target {target:g}: {'met' if found <= target else 'MISSED'}")
     return found <= target
 

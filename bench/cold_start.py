@@ -70,28 +70,32 @@ _COMMANDS = (
 )
 
 
-def main() -> bool:
-    """Measure and print; return whether every target is met."""
+def main(rounds: int | None = None) -> bool:
+    """Measure and print; return whether every target is met.
+
+    Args:
+        rounds: Number of rounds; None for REPEATS.
+    """
     with tempfile.TemporaryDirectory() as name:
         folder = Path(name)
-        return all([_wall_times(folder), _ratios(folder)])
+        return all([_wall_times(folder, rounds or REPEATS), _ratios(folder, rounds or REPEATS)])
 
 
-def _wall_times(folder: Path) -> bool:
-    print(f"wall time of a command, median of {REPEATS}")
-    fresh = [_wall(folder, "robot=macro", f"seed={seed}") for seed in range(REPEATS)]
+def _wall_times(folder: Path, rounds: int) -> bool:
+    print(f"wall time of a command, median of {rounds}")
+    fresh = [_wall(folder, "robot=macro", f"seed={seed}") for seed in range(rounds)]
     print(f"  {'runner robot=macro, simulated':50} {median(fresh):5.2f} s")
     return all(
         [
-            _judge("runner --help", _repeat(folder, "--help"), HELP_TARGET),
-            _judge("runner list robots", _repeat(folder, "list", "robots"), TARGET),
-            _judge("runner doctor, KUKA iiwa", _repeat(folder, "doctor", _KUKA), DOCTOR_TARGET),
+            _judge("runner --help", _repeat(folder, rounds, "--help"), HELP_TARGET),
+            _judge("runner list robots", _repeat(folder, rounds, "list", "robots"), TARGET),
+            _judge("runner doctor, KUKA iiwa", _repeat(folder, rounds, "doctor", _KUKA), DOCTOR_TARGET),
         ]
     )
 
 
-def _ratios(folder: Path) -> bool:
-    print(f'CPU time of a command against `python -c "import hydra"`, in turn, median of {REPEATS}')
+def _ratios(folder: Path, rounds: int) -> bool:
+    print(f'CPU time of a command against `python -c "import hydra"`, in turn, median of {rounds}')
     found: dict[_Command, list[float]] = {}
     hydra: list[float] = []
     kept = {**os.environ, "XDG_CACHE_HOME": str(folder / "cache")}
@@ -103,7 +107,7 @@ def _ratios(folder: Path) -> bool:
 
     for command in _COMMANDS:  # so that all is compiled, stored and kept
         _cpu(folder, words(command), _environment(command, kept))
-    for repeat in range(REPEATS):
+    for repeat in range(rounds):
         hydra.append(_cpu(folder, _HYDRA, kept))
         for number, command in enumerate(_COMMANDS):
             cache = {"XDG_CACHE_HOME": str(folder / f"empty_{repeat}_{number}")} if command.first else {}
@@ -129,8 +133,8 @@ def _cpu(folder: Path, words: Sequence[str], environment: Mapping[str, str]) -> 
     return after.ru_utime + after.ru_stime - before.ru_utime - before.ru_stime
 
 
-def _repeat(folder: Path, *arguments: str) -> float:
-    return median(_wall(folder, *arguments) for _ in range(REPEATS))
+def _repeat(folder: Path, rounds: int, *arguments: str) -> float:
+    return median(_wall(folder, *arguments) for _ in range(rounds))
 
 
 def _wall(folder: Path, *arguments: str) -> float:

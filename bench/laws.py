@@ -21,7 +21,7 @@ from bench.batches import batches
 from bench.least_loops import MissingError, least_loop
 from bench.tick import pybullet_alone, whole_run
 from bench.tip_loop import FloatArray, TipLoop, tip_loop
-from bench.turns import Block, measure, ratio
+from bench.turns import Block, kept_of, measure, ratio
 from runner.simulation.loop import simulate
 from runner.simulation.sensors import make_encoders
 
@@ -46,16 +46,20 @@ class Row(NamedTuple):
     targets: dict[str, float] = {}  # noqa: RUF012 - never changed
 
 
-def main() -> bool:
-    """Measure and print; return whether every target is met."""
-    print(f"CPU time of a control tick; medians of the quieter {ROUNDS // 2} of {ROUNDS} rounds of {TICKS} ticks")
-    met = [_measured(arm) for arm in ARMS]
+def main(rounds: int | None = None) -> bool:
+    """Measure and print; return whether every target is met.
+
+    Args:
+        rounds: Number of rounds; None for ROUNDS.
+    """
+    print(f"CPU time of a control tick; medians of {kept_of(rounds or ROUNDS)} of {TICKS} ticks")
+    met = [_measured(arm, rounds or ROUNDS) for arm in ARMS]
     return all([*met, compile_times.main()])
 
 
-def _measured(arm: Arm) -> bool:
+def _measured(arm: Arm, rounds: int) -> bool:
     rows = {**_bounds(arm), **_ours(arm)}
-    times = measure({name: row.block for name, row in rows.items()}, ROUNDS)
+    times = measure({name: row.block for name, row in rows.items()}, rounds)
     print(f"  {arm.name}")
     met = True
     for name, row in rows.items():

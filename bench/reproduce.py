@@ -20,9 +20,14 @@ TARGETS = {
 _BORDER = b"writing the report"  # said on standard error when the last run is stored
 
 
-def main() -> bool:
-    """Measure and print; return whether every target is met."""
-    met = [_measure(study, target) for study, target in TARGETS.items()]
+def main(rounds: int | None = None) -> bool:
+    """Measure and print; return whether every target is met.
+
+    Args:
+        rounds: With 1, only the study of the shortest target is made.
+    """
+    chosen = dict([min(TARGETS.items(), key=lambda item: item[1])]) if rounds == 1 else TARGETS
+    met = [_measure(study, target) for study, target in chosen.items()]
     return all(met)
 
 

@@ -9,7 +9,7 @@ import os
 from collections.abc import Callable, Iterable
 from statistics import median
 
-from bench.turns import ROUNDS, Block, measure, ratio
+from bench.turns import ROUNDS, Block, kept_of, measure, ratio
 from runner.base.engine_output import quiet_stderr
 from runner.config.compose.compose import compose
 from runner.config.run import RunConfig
@@ -46,8 +46,12 @@ _CASES = {
 }
 
 
-def main() -> bool:
-    """Measure and print; return whether every target is met."""
+def main(rounds: int | None = None) -> bool:
+    """Measure and print; return whether every target is met.
+
+    Args:
+        rounds: Number of rounds; None for ROUNDS.
+    """
     loops = {name: _assemble(*overrides) for name, overrides in _CASES.items()}
     blocks: dict[str, Callable[[], None]] = {}
     for name, (config, loop) in loops.items():
@@ -55,15 +59,12 @@ def main() -> bool:
             torques = simulate(loop, make_encoders(loop, config.noise, config.settings.seed, 0)).tau[:-1].tolist()
             blocks[f"F: {name}"] = pybullet_alone(config, torques)
         blocks[name] = whole_run(config, loop)
-    times = measure({name: Block(work, TICKS) for name, work in blocks.items()})
+    times = measure({name: Block(work, TICKS) for name, work in blocks.items()}, rounds or ROUNDS)
 
     F10, F1 = times["F: bullet, 10 substeps"], times["F: bullet, 1 substep"]
     bullet10, bullet1, impedance10, rk4, rubbing, armature10, armature1, combined = (times[name] for name in _CASES)
     F6 = times["F: combined, 4 substeps"]
-    print(
-        f"CPU time of a control tick, 3 joints (combined: 6), median of the quieter {ROUNDS // 2} of {ROUNDS} rounds "
-        f"of {TICKS} ticks"
-    )
+    print(f"CPU time of a control tick, 3 joints (combined: 6), median of {kept_of(rounds or ROUNDS)} of {TICKS} ticks")
     for name, values in times.items():
         print(f"  {name:26} {median(values):6.2f} us  (quickest round {min(values):.2f})")
     within = [

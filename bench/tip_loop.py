@@ -73,7 +73,7 @@ def tip_loop(config: RunConfig, closed: ClosedLoop) -> TipLoop:
         law=np.array([frequency**2, 2.0 * damping * frequency, posture**2, 2.0 * posture]),
         held=(np.arange(robot.model.nq) >= first_held).astype(float),
         rest=robot.home,
-        limits=closed.limits,
+        limits=closed.limits.max,
         start=closed.q_start,
         tick=closed.tick,
         desired=np.ascontiguousarray(closed.trajectory.sample(np.arange(closed.ticks + 1) * closed.tick)),

@@ -25,12 +25,17 @@ class Block:
     ticks: int
 
 
+def kept_of(rounds: int) -> str:
+    """Return the phrase for the rounds that are judged."""
+    return "1 round" if rounds == 1 else f"the quieter {rounds // 2} of {rounds} rounds"
+
+
 def measure(blocks: Mapping[str, Block], rounds: int = ROUNDS) -> dict[str, list[float]]:
     """Run all blocks in turns; return the CPU time per tick in the quieter half of the rounds, in us."""
     for block in blocks.values():
         block.work()  # caches filled, before anything counts
     found = [{name: _cpu_time(block) for name, block in blocks.items()} for _ in range(rounds)]
-    quieter = sorted(found, key=lambda times: sum(times.values()))[: rounds // 2]
+    quieter = sorted(found, key=lambda times: sum(times.values()))[: max(1, rounds // 2)]
     return {name: [times[name] for times in quieter] for name in blocks}
 
 

@@ -5,7 +5,17 @@ from importlib import import_module
 
 from runner.base.engines import quiet_environment
 
-NAMES = ("agreement", "friction_coverage", "answers", "kills", "mutants", "fuzz")
+NAMES = (
+    "agreement",
+    "friction_coverage",
+    "answers",
+    "kills",
+    "processors",
+    "mutants",
+    "fuzz",
+    "option_walk",
+    "plain_hydra",
+)
 
 chosen = sys.argv[1:] or NAMES
 if not set(chosen) <= set(NAMES):

@@ -15,6 +15,7 @@ from runner.base.trace import Trace
 from runner.config.compose.compose import compose
 from runner.config.composed import Composed
 from runner.config.flexibility import find_flexibility, is_flexible
+from runner.config.parsing import require
 from runner.config.run import RunConfig
 from runner.config.validation import validate
 from runner.metrics import summary
@@ -172,10 +173,9 @@ def _why_not(config: RunConfig) -> str:
         return "plant.links: runs of arms whose links bend are not compiled; take plant=rk4"
     if config.has_contact:
         return f"environment {config.environment.kind}: runs in which the tip feels something are not compiled whole"
-    if config.plugged:
-        kinds = ", ".join(f"{group}={kind}" for group, kind in config.plugged.items())
-        return f"runs with {kinds} of a plug-in are not compiled"
-    if (config.encoder_noise.resolution > 0.0).any():
+    if config.interpreted:
+        return f"{' and '.join(config.interpreted)}: such parts have no compiled form"
+    if (require(config.encoder_noise).resolution > 0.0).any():
         return "noise.resolution rounds the measured positions to steps, which have no derivative; set it to 0"
     return ""
 

@@ -76,16 +76,15 @@ def sweep(
     """
     from runner.config.compose.composer import Composer
     from runner.sweeps.finer_step import work_out_sweep
-    from runner.sweeps.plan import Grid
     from runner.sweeps.run import Engine, run_sweep
+    from runner.sweeps.typed import plan_typed
 
     use_plugins(plugins)
     folders, entries = config_folders(config_dirs), sweep_overrides(overrides, use_functions(values))
     texts = [each if isinstance(each, str) else each.typed for each in entries]
     _reject_hydra(texts)
     engine, loader = Engine(workers, address), Composer(folders)
-    brought = loader.sweeper(texts).params or {}  # axes that an experiment brings along
-    plan = Grid([*(f"{key}={value}" for key, value in brought.items()), *entries], loader)
+    plan, _ = plan_typed(entries, loader)
     with workers_only_work():
         ended = run_sweep(plan, engine, _command(["-m"], folders, texts))
     sweep = store.open_sweep(ended.folder)

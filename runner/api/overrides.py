@@ -14,7 +14,7 @@ from runner.store.axes import SweepAxis, override_value
 
 T = TypeVar("T", bound="str | SweepAxis")
 _KEY = re.compile(r"[A-Za-z_][\w.@/]*")
-_BARE = re.compile(r"[\w./+-]+")
+_BARE = re.compile(r"[\w./+-]+", re.ASCII)
 _ALLOWED = "a number, text, bool, None, Path, list, tuple, dict or NumPy array"
 
 
@@ -103,8 +103,13 @@ def _interval(key: str, value: object) -> str:
 
 
 def _text(value: object) -> str:
-    """Return a value as written after `KEY=`; a string is returned unchanged, in a list it is always one value."""
-    return value if type(value) is str else override_value(_plain(value), _letters)
+    """Return a value as written after `KEY=`; a string is returned unchanged, in a list it is always one value.
+
+    A path is always quoted: its name may be that of a number.
+    """
+    if type(value) is str:
+        return value
+    return override_value(_plain(value), _quote if isinstance(value, PurePath) else _letters)
 
 
 def _plain(value: object) -> object:
@@ -130,8 +135,10 @@ def _name(key: object) -> str:
 
 def _letters(text: str) -> str:
     """Return a string as one Hydra value, quoted if it contains more than a name or a number."""
-    if _BARE.fullmatch(text):
-        return text
+    return text if _BARE.fullmatch(text) else _quote(text)
+
+
+def _quote(text: str) -> str:
     return QuotedString(text, Quote.single).with_quotes()
 
 

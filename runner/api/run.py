@@ -51,6 +51,7 @@ class Run(store.Run):
         """Return the signals of a repetition, one row per tick; `units` has the units of the columns.
 
         Repetition 0 is stored. Any other repetition is simulated again, and its metrics must equal the stored metrics.
+        On another machine than that of the run, metrics that are equal up to rounding cause a RuntimeWarning.
 
         Raises:
             RunnerError: if there is no such repetition, or the code has changed since the run.

@@ -5,6 +5,7 @@ Every repetition except the first is simulated again.
 
 import math
 import re
+import warnings
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
@@ -12,7 +13,8 @@ from typing import TYPE_CHECKING
 from matplotlib.figure import Figure
 
 from runner import store
-from runner.base.errors import ConfigError, RunnerError, unknown
+from runner.base.errors import RunnerError, unknown
+from runner.base.machine import equal_up_to_rounding, read_machine, this_machine
 from runner.base.quantities import label_with_unit
 from runner.reporting.charts.scales import curves_in_readable_units
 from runner.reporting.charts.static import as_figure, draw
@@ -23,7 +25,6 @@ from runner.store.run import units_of
 if TYPE_CHECKING:
     import pandas as pd
 
-    from runner.config.run import RunConfig
 
 _JOINT = re.compile(r"(q|dq|tau)(\d+)(_command)?")
 _AXIS = re.compile(r"(\w+)_([xyz])")
@@ -56,7 +57,8 @@ class Signals:
 def signals_of(run: store.Run, repetition: int) -> Signals:
     """Return the signals of a repetition: the first is read from the store, any other is simulated again.
 
-    The metrics of the new simulation must equal the stored metrics, to the last bit.
+    The metrics of the new simulation must equal the stored metrics, to the last bit on the machine of the run. On
+    another machine, or with other library versions, they must be equal up to rounding, and a warning states this.
 
     Raises:
         RunnerError: if there is no such repetition, or the code, the robot's file or the machine gives another result.
@@ -75,39 +77,38 @@ def _simulated(run: store.Run, repetition: int) -> Signals:
     from runner.simulation.assembly import metric_context
     from runner.simulation.run import simulate_repetition
     from runner.store.writing import trace_table
+    from runner.sweeps.rerun import checked_config
 
-    config = _checked(run, repetition)
+    config = checked_config(run, f"repetition {repetition} of {run.hash}")
     trace = simulate_repetition(config, repetition)
     found = evaluate(trace, metric_context(config), [])
-    for name in run.metrics:
-        stored = float(run.values(name)[repetition])
-        value = None if math.isnan(stored) else stored
-        if found.get(name) != value:
-            raise RunnerError(
-                f"repetition {repetition} of {run.hash}, simulated again, differs: {name} is {found.get(name)}, "
-                f"stored is {value}; another machine or library version rounds in another way"
-            )
+    _check_metrics(run, repetition, found)
     table = trace_table(trace)
     return Signals(table.to_pandas(), units_of(table))
 
 
-def _checked(run: store.Run, repetition: int) -> "RunConfig":
-    """Return the config of a run; raise an error if the code or the robot has changed since the run."""
-    from runner.config.validation import validate
+def _check_metrics(run: store.Run, repetition: int, found: Mapping[str, float | None]) -> None:
+    """Check that the metrics of a repetition that was simulated again are the stored metrics.
 
-    cannot = f"repetition {repetition} of {run.hash} cannot be simulated again: "
-    if store.run_hash(run.config, run.urdf) != run.hash:
-        raise RunnerError(
-            f"{cannot}the code has changed since the run (the runner, a plug-in, or the version of an engine), or one "
-            "of its plug-ins is not loaded; simulate it again with runner.run"
-        )
-    try:
-        config = validate(run.composed)
-    except ConfigError as error:
-        raise RunnerError(f"{cannot}{'; '.join(error.problems)}") from None
-    if config.arm.urdf != run.urdf:
-        raise RunnerError(f"{cannot}the file of its robot has changed since the run; simulate it again with runner.run")
-    return config
+    Raises:
+        RunnerError: if one differs by more than rounding, or differs at all on the machine of the run.
+    """
+    from runner.simulation.provenance import versions
+
+    values = {name: float(run.values(name)[repetition]) for name in run.metrics}
+    stored = {name: None if math.isnan(value) else value for name, value in values.items()}
+    moved = [name for name, value in stored.items() if found.get(name) != value]
+    here = (read_machine(run.provenance["machine"]), run.provenance["versions"]) == (this_machine(), versions())
+    again = f"repetition {repetition} of {run.hash}, simulated again, differs"
+    for name in moved:
+        if here or not equal_up_to_rounding(stored[name], found.get(name)):
+            cause = "its machine and library versions are these, so it is not reproducible" if here else (
+                "another machine or library version rounds in another way"
+            )  # fmt: skip
+            raise RunnerError(f"{again}: {name} is {found.get(name)}, stored is {stored[name]}; {cause}")
+    if moved:
+        text = f"{again} in the last digits of {len(moved)} metrics: its machine or library versions are others"
+        warnings.warn(text, RuntimeWarning, stacklevel=6)  # at the caller of Run.trace
 
 
 def families(columns: Sequence[str]) -> dict[str, dict[str, str]]:

@@ -4,6 +4,7 @@ A few lines of YAML can expand to more values than fit in memory (aliases of ali
 data (an anchor that contains itself), or nesting too deep for any loader. All checks run before any object is built.
 """
 
+import re
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass, field
 from pathlib import Path
@@ -15,7 +16,6 @@ from yaml.resolver import Resolver
 from runner.base.dotted_keys import calls_function
 from runner.base.errors import RunnerError
 from runner.base.limits import Limit
-from runner.base.paths import ships
 from runner.base.sanitize import quoted
 
 
@@ -32,6 +32,11 @@ class Bounds:
     size: Limit
     values: int
     depth: int = 30
+
+    @property
+    def too_deep(self) -> str:
+        """Return the message about a document that exceeds the depth."""
+        return f"nested deeper than {self.depth} levels; no config needs so many"
 
 
 CONFIG = Bounds(Limit(250_000, "bytes"), values=10_000)
@@ -75,16 +80,19 @@ def check_yaml(text: str, name: str | Path, bounds: Bounds = CONFIG, once: bool 
 
     Raises:
         YamlError: if the document is not valid YAML or exceeds a limit, if an anchor contains itself, a key is not a
-            string, a value has a tag, or a value has a ${...} that is not a reference to a key. The last is allowed in
-            built-in configs only.
+            string, a value has a tag, a number is not decimal, or a value has a ${...} that is not a reference to a
+            key.
     """
     if excess := bounds.size.excess(len(text.encode(errors="replace"))):
         raise YamlError(f"{name}: {excess}")
-    scan = _Scan(str(name), bounds, once, isinstance(name, Path) and ships(name))
+    scan = _Scan(str(name), bounds, once)
     try:
         for event in yaml.parse(text, Loader=yaml.CSafeLoader):
             scan.take(event)
     except yaml.YAMLError as error:
+        mark = getattr(error, "problem_mark", None)
+        if mark and "nesting depth" in str(error):  # newer LibYAML reads ahead, and stops at 1,000 levels
+            raise YamlError(f"{name}, line {mark.line + 1}: {bounds.too_deep}") from None
         raise YamlError(explain_yaml(error, name)) from None
 
 
@@ -111,6 +119,19 @@ def line_with(text: str, path: Path) -> str:
     return str(path)
 
 
+# Plain scalars that YAML 1.1 reads in another base: 0b101 as 5, 0x10 as 16, 010 as 8, and 1:30 as 90, in base 60.
+_OTHER_BASE = re.compile(r"[-+]?(0b[01_]+|0x[\da-fA-F_]+|0[0-7_]+|\d[\d_]*(:[0-5]?\d)+(\.[\d_]*)?)")
+
+_DIGITS = 40  # more than any valid number has
+
+
+def _not_decimal(text: str) -> Iterator[str]:
+    """Yield a problem for a plain scalar that YAML reads as a number in another base."""
+    number = yaml.load(text, yaml.CSafeLoader) if len(text) <= _DIGITS and _OTHER_BASE.fullmatch(text) else text
+    if not isinstance(number, str):
+        yield f"{text} is not a decimal number, and YAML reads it as {number}; write {number}, or put it in quotes"
+
+
 @dataclass
 class _Open:
     """Open collection: anchor, number of values so far, and whether a key comes next (None in a list)."""
@@ -122,8 +143,8 @@ class _Open:
 
 
 class _Scan:
-    def __init__(self, name: str, bounds: Bounds, once: bool, ours: bool) -> None:
-        self._name, self._bounds, self._once, self._ours = name, bounds, once, ours
+    def __init__(self, name: str, bounds: Bounds, once: bool) -> None:
+        self._name, self._bounds, self._once = name, bounds, once
         self._open = [_Open(None, 0, None)]
         self._sizes: dict[str, int] = {}
         self._resolver = Resolver()
@@ -168,11 +189,13 @@ class _Scan:
                 yield f"*{event.anchor} stands for nothing: there is no &{event.anchor} before it"
             return
         if len(self._open) > self._bounds.depth and isinstance(event, yaml.CollectionStartEvent):
-            yield f"nested deeper than {self._bounds.depth} levels; no config needs so many"
+            yield self._bounds.too_deep
         if event.tag not in (None, "!"):
             yield f"the tag {quoted(event.tag)} says how to make a value; remove it: values are plain"
-        if isinstance(event, yaml.ScalarEvent) and calls_function(event.value) and not self._ours:
+        if isinstance(event, yaml.ScalarEvent) and calls_function(event.value):
             yield f"{quoted(event.value)} calls a function; a file may only refer to keys, as in ${{robot.period}}"
+        if isinstance(event, yaml.ScalarEvent) and event.implicit[0]:
+            yield from _not_decimal(event.value)
         if self._open[-1].key_next and not self._is_text(event):
             found = quoted(event.value) if isinstance(event, yaml.ScalarEvent) else "a collection"
             yield f"the key {found} is no text; put it in quotes, or look for a typing error"

@@ -1,10 +1,15 @@
-"""Pinocchio and parts of SciPy, imported on first use, because checks of a config do not need them."""
+"""Pinocchio, eigenpy and parts of SciPy, imported on first use, because checks of a config do not need them.
+
+eigenpy is Pinocchio's interface to Eigen. Its factorisations of small matrices have the same bits on every x86-64
+processor; those of NumPy and SciPy do not.
+"""
 
 from collections.abc import Callable
 from types import ModuleType
 from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
+    import eigenpy as eigen
     import pinocchio as pin
     from scipy import interpolate as splines
     from scipy.linalg import lapack
@@ -32,6 +37,11 @@ else:
 
         return pinocchio
 
+    def _eigenpy() -> ModuleType:
+        import eigenpy
+
+        return eigenpy
+
     def _interpolate() -> ModuleType:
         from scipy import interpolate
 
@@ -42,6 +52,7 @@ else:
 
         return lapack
 
-    pin, splines, lapack = _LazyModule(_pinocchio), _LazyModule(_interpolate), _LazyModule(_lapack)
+    pin, eigen = _LazyModule(_pinocchio), _LazyModule(_eigenpy)
+    splines, lapack = _LazyModule(_interpolate), _LazyModule(_lapack)
 
-__all__ = ["lapack", "pin", "splines"]
+__all__ = ["eigen", "lapack", "pin", "splines"]

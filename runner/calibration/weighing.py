@@ -17,7 +17,7 @@ from runner.robots.model import RobotModel
 from runner.schema.model import StrictModel
 from runner.schema.units import Metres, Radians
 from runner.sensing.force_torque import ForceTorqueSensor
-from runner.sensing.wrench import wrench_transform
+from runner.sensing.wrench import inverse_wrench_transform
 
 _SETTLED = 1e-9  # of a change of load, which the sensor's low-pass leaves unseen when a reading is taken
 _TRIED = 50  # orientations in which the compensation is tried
@@ -138,7 +138,7 @@ class Weighing:
         along = sensor.pose[:3, :3].T
         inertia = along @ tool.inertia @ along.T
         compensation = WrenchCompensation(found, inertia, self._bench.gravity)
-        to_sensor = np.linalg.inv(wrench_transform(sensor.pose))
+        to_sensor = inverse_wrench_transform(sensor.pose)
         left = np.array(
             [
                 compensation.external(to_sensor @ load + sensor.bias, R, REST)

@@ -129,7 +129,9 @@ class Parser(argparse.ArgumentParser):
         self.epilog = f"{example}\nOptions of every command: runner --help"
 
     def _get_formatter(self) -> argparse.HelpFormatter:
-        return argparse.HelpFormatter(self.prog, max_help_position=28)
+        # From Python 3.14 on the usage is coloured on a terminal, also within messages.
+        plain: dict[str, Any] = {"color": False} if sys.version_info >= (3, 14) else {}
+        return argparse.HelpFormatter(self.prog, max_help_position=28, **plain)
 
     def format_usage(self) -> str:
         """Return the usage, without the options of every command."""

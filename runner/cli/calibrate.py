@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING
 from runner.base.quantities import plain_number
 from runner.base.sanitize import one_line
 from runner.cli.arguments import Parser
+from runner.config.compose.files import outputs_override
 from runner.reporting.table import Number, Table, numbers, terminal
 
 if TYPE_CHECKING:
@@ -26,7 +27,7 @@ def run(options: Namespace) -> int:
     """Simulate one calibration; print a table of its errors, and its folder as the last line."""
     from runner.sweeps.job import calibrate
 
-    outputs = [] if options.output is None else [f"outputs={options.output}"]
+    outputs = [] if options.output is None else [outputs_override(options.output)]
     done = calibrate(*options.overrides, *outputs, config_dirs=options.config_dir)
     for warning in done.provenance["warnings"]:
         print(one_line(f"runner: warning: {warning}"), file=sys.stderr)

@@ -23,7 +23,8 @@ if TYPE_CHECKING:
     from runner.statistics.proportion import Share
     from runner.statistics.spec import Kept
     from runner.store import Run, Sweep
-    from runner.store.baselines import Band, Bands, Cells, Finding, Move
+    from runner.store.baselines import Band, Bands, Finding
+    from runner.store.cells import Move, SweepBaseline
 
 _MOVE_COLUMNS = ("cell", "metric", *numbers("was", "is", "moved"), "beyond the seeds' spread")
 _DIGITS = 3  # significant digits of the number of repetitions that are still needed
@@ -51,15 +52,21 @@ def run(options: argparse.Namespace) -> int:
     """Check a run or sweep against a baseline, or save one."""
     markdown = options.format == ["markdown"]
     from runner import store
-    from runner.store.baselines import Bands, cell_names, load_baseline, renew_bands, save_baseline
+    from runner.store.baselines import Bands, load_baseline, renew_bands
+    from runner.store.cells import cell_names, save_baseline
     from runner.store.kinds import kind_of
+    from runner.sweeps.rounding import Sensitivity, find_sensitive
 
     if options.save_baseline:
+        if options.baseline or options.max_failure_probability is not None or options.format:
+            others = "--baseline, --max-failure-probability or --format"
+            options.parser.error(f"--save-baseline compares nothing: not with {others}")
         path, sweep = options.save_baseline, store.open_sweep(options.folder)
         before = load_baseline(path) if path.exists() else None
         bands = before if isinstance(before, Bands) else None
-        count = renew_bands(bands, list(sweep.runs()), path) if bands else save_baseline(sweep, path)
-        print(f"saved: {count} metrics of {options.folder} are now in {path}")
+        found = Sensitivity() if bands else find_sensitive(sweep)
+        count = renew_bands(bands, list(sweep.runs()), path) if bands else save_baseline(sweep, path, found.changes)
+        print(f"saved: {count} metrics of {options.folder} are now in {path}{found.in_words()}")
         return 0
     baseline = load_baseline(options.baseline) if options.baseline else None
     if not (baseline is None or isinstance(baseline, Bands)):
@@ -89,27 +96,33 @@ def _probability(text: str) -> float:
     return value
 
 
-def _check_sweep(sweep: "Sweep", baseline: "Cells", markdown: bool) -> int:
-    """Print the changes since a sweep's baseline was saved; return 1 if one exceeds the spread of the seeds."""
+def _check_sweep(sweep: "Sweep", baseline: "SweepBaseline", markdown: bool) -> int:
+    """Print the changes since a sweep's baseline was saved; return 1 if one of them fails the check."""
     from runner.reporting.export.columns import write_markdown
-    from runner.store.baselines import find_moves
+    from runner.store.cells import BROKEN, SENSITIVE, check_sweep
 
-    moves = find_moves(sweep, baseline)
-    beyond = sum(move.beyond for move in moves)
-    total = sum(map(len, baseline.values()))
-    summary = f"{total} metrics of {len(baseline)} cells: {len(moves)} moved, {beyond} beyond the seeds' spread"
+    found = check_sweep(sweep, baseline)
+    moves, beyond = found.moves, sum(move.beyond for move in found.moves)
+    summary = (
+        f"{baseline.size} metrics of {len(baseline.cells)} cells: {len(moves)} moved, {beyond} beyond the seeds' spread"
+    )
+    for remark in (SENSITIVE, BROKEN):
+        count = sum(move.remark == remark for move in moves)
+        summary += f", {count} {remark}" if count else ""
     table = Table("", _MOVE_COLUMNS, list(map(_move_row, moves)))
     if markdown:
         print("\n".join([f"**{summary}**", *(["", write_markdown(table)] if moves else [])]))
     else:
         print("\n".join([summary, terminal(table)]) if moves else f"good: {summary}")
-    return 1 if beyond else 0
+    for note in found.notes:
+        print(f"\n{one_line(note)}" if markdown else one_line(note))
+    return 1 if any(move.fails for move in moves) else 0
 
 
 def _move_row(move: "Move") -> list[str]:
-    beyond = "yes" if move.beyond else "no"
+    beyond = f"{'yes' if move.beyond else 'no'}{', ' if move.remark else ''}{move.remark}"
     if not move.metric:
-        return [move.cell, "(all)", "", "", move.remark, beyond]
+        return [move.cell, "(all)", "", "", move.event, beyond]
     was, unit = "-", ""
     if move.was is not None:
         unit = "" if move.was.unit == "1" else f" {move.was.unit}"

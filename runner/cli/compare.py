@@ -70,6 +70,8 @@ def _compare(options: Namespace) -> None:
     everything, things = options.all or options.json, list(map(open_stored, options.folders))
     runs = [thing for thing in things if isinstance(thing, Run)]
     sweeps = [thing for thing in things if isinstance(thing, Sweep)]
+    if options.output:
+        raise RunnerError(f"--output: nothing is written ({options.output}). Allowed: only with a recording.")
     if options.within and not options.by:
         raise RunnerError("--within: needs --by AXIS, the axis that is compared.")
     if (options.by and (len(things) > 1 or runs)) or (options.where and runs):
@@ -171,8 +173,8 @@ def _compare_recording(given: Sequence[Path], recordings: Sequence[Path], option
         raise RunnerError(f"{recordings[0]}: add --columns FILE, which describes its columns (docs/recordings.md).")
     if kind_of(folders[0]) != "run":
         raise RunnerError(f"{folders[0]}: it is a sweep. Allowed: one run and one recording.")
-    if options.by or options.within or options.metrics or options.where:
-        raise RunnerError("--by, --within, --where and --metrics: not for recordings.")
+    if options.by or options.within or options.metrics or options.where or options.json or options.all:
+        raise RunnerError("--by, --within, --where, --metrics, --json and --all: not for recordings.")
     _print_recording(folders[0], recordings[0], options)
 
 

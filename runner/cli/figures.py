@@ -53,15 +53,18 @@ def run(options: Namespace) -> int:
     width = _millimetres(options.width)
     if options.motion is not None and options.motion.suffix.lower() not in _MOTIONS:
         raise RunnerError(unknown("ending", options.motion.suffix, _MOTIONS, f"--motion {options.motion}"))
+    if options.motion is not None and options.output is not None:
+        raise RunnerError(f"--output: not with --motion ({options.output}), which names its own file.")
     from runner.reporting.charts.sheet import column
     from runner.reporting.export.figures import choose_figures, figures_of, write_figures
+    from runner.store.kinds import report_place
 
     document, report = _document(options.folders)
     figures = choose_figures(figures_of(document), options.only)
     if options.motion is not None:
         print(_write_motion(figures, options.motion, column(width)))
         return 0
-    folder = report / "figures" if options.output is None else options.output
+    folder = options.output or report_place(report.parent.parent, f"{report.name}/figures")
     for name in write_figures(figures, folder, column(width)):
         print(name)
     print(folder)

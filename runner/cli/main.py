@@ -73,6 +73,7 @@ def main() -> None:
         complete()
     _open_outputs()
     signal.signal(signal.SIGTERM, _terminate)
+    signal.signal(signal.SIGINT, _interrupt)
     try:
         code = dispatch(sys.argv[1:])
         sys.stdout.flush()
@@ -93,6 +94,11 @@ class TerminatedError(KeyboardInterrupt):
 def _terminate(*_: object) -> NoReturn:
     signal.signal(signal.SIGTERM, signal.SIG_IGN)  # a second signal must not interrupt the shutdown
     raise TerminatedError
+
+
+def _interrupt(*_: object) -> NoReturn:
+    signal.signal(signal.SIGINT, signal.SIG_DFL)  # a second Ctrl-C ends the process at once
+    raise KeyboardInterrupt
 
 
 def _open_outputs() -> None:
@@ -199,7 +205,7 @@ def run_line(words: Sequence[str]) -> int:
         print(GUIDE, end="")
     elif first in ("-h", "--help", "help"):
         print(help_text(), end="")
-    elif first == "--version":
+    elif first == "--version" or ("--version" in words and (first not in COMMANDS or first in OVERRIDES)):
         from importlib.metadata import version
 
         print(version("arm-control-runner"))

@@ -21,7 +21,7 @@ from runner.base.errors import RunnerError
 from runner.cli.arguments import Parser
 from runner.config.compose.files import outputs_dir
 from runner.plugins.discovery import in_use, named_parts
-from runner.store.kinds import note
+from runner.store.kinds import note, report_place
 from runner.study.changes import FILE
 from runner.study.names import find_study, study_names
 
@@ -77,6 +77,8 @@ def run(options: Namespace) -> int:
     if others:
         allowed = ", ".join(f"{key}*" for key in _FREE)
         raise RunnerError(f"reproduce: the study decides what it simulates ({others[0]}). Allowed: {allowed}.")
+    if options.study == AUDIT and (options.code or options.profile):
+        raise RunnerError("--code and --profile: not for the audit, which runs no study. Allowed: with a study.")
     if options.study not in (AUDIT, "all"):
         find_study(options.study, (AUDIT, "all"))  # rejects an unknown name before anything is read
     plugins = [word for text in named_parts() for word in ("--plugin", text)]
@@ -125,7 +127,7 @@ def _reproduce(study: "Study | None", options: Namespace) -> "tuple[str, _Reprod
 
     name = AUDIT if study is None else study.name
     progress.set_title(name)
-    folder = options.output / "reports" / name
+    folder = report_place(options.output, name)
     store.prepare(options.output)
     made = _audit(folder) if study is None else _reproduce_study(study, options)
     print("writing the report ...", file=sys.stderr)

@@ -10,6 +10,7 @@ from argparse import ArgumentTypeError, Namespace
 from datetime import datetime
 from pathlib import Path
 
+from runner.base.sanitize import one_line
 from runner.cli.arguments import Parser
 from runner.config.compose.files import outputs_dir
 
@@ -61,7 +62,9 @@ def _delete(options: Namespace) -> None:
     from runner.sweeps.at_work import commands_in, in_words
 
     entries = list_entries(options.outputs)
-    found = removable(entries, options.delete)
+    found, kept = removable(entries, options.delete)
+    for reason in kept:
+        print(one_line(f"runner: {reason}"), file=sys.stderr)
     for entry in found:
         print(entry.folder)
     megabytes = sum(entry.size for entry in found) / 1e6

@@ -1,7 +1,7 @@
 """Simulate one run, or every combination of the listed values.
 
 An override sets a key or chooses from a group, as controller.period=5ms or robot=macro. A line without a command is a
-run. `runner sweep` is the same as `runner -m`. All other flags are Hydra's.
+run. `runner sweep` is the same as `runner -m`.
 
 Example: runner sweep robot=macro trajectory=quintic controller=computed_torque,joint_pd seed=0,1
 """
@@ -16,22 +16,24 @@ from collections.abc import Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from runner.base.errors import RunnerError
+from runner.base.errors import RunnerError, unknown
 from runner.base.paths import conf_dir
 from runner.base.sanitize import one_line
 from runner.cli.arguments import Parser
-from runner.config.compose.files import outputs_dir, user_overrides
+from runner.config.compose.files import outputs_dir, outputs_override, user_overrides
 from runner.reporting.table import Table, numbers, terminal
 from runner.store.kinds import WORD
 
 if TYPE_CHECKING:
     from omegaconf import DictConfig
 
+    from runner.config.composed import Composed
     from runner.store import Run
     from runner.store.axes import Axis
     from runner.sweeps.run import Ended
 
 _METRICS = 5
+_OF_SWEEPS = [f"sweep.{name}" for name in ("trace", "retry", "on_failure", "attempts", "time_limit", "part")]
 _NAMES = (("robot", "name"), ("controller", "kind"), ("trajectory", "kind"))
 _FAILURES_SHOWN = 20
 _MOST_RANKED = 200  # cells; to read so many takes half a second
@@ -42,22 +44,27 @@ _WITHOUT_OURS = (
     "hydra.output_subdir=null",
 )  # fmt: skip
 _MANY, _OF_SWEEPER = ("-m", "--multirun"), "hydra.sweeper."
+_SHOWN = ("job", "hydra", "all")
 
 
 def add_arguments(parser: Parser) -> None:
     """Add the arguments, for help and completion; `simulate` takes the words as they are typed."""
-    parser.add_overrides("such as robot=macro; lists in a sweep, such as seed=0,1")
+    parser.add_overrides("such as robot=macro, or seed=0,1 in a sweep")
     parser.add_argument(*_MANY, action="store_true", help="simulate a sweep over every combination")
     _add_own(parser)
-    parser.add_argument("-c", "--cfg", choices=("job", "hydra", "all"), help="print the config, without a simulation")
+    parser.add_argument("-c", "--cfg", choices=_SHOWN, help="print the config, without a simulation")
     parser.add_argument("--hydra-help", action="store_true", help="show all flags of Hydra")
     parser.add_argument("--version", action="store_true", help="show the version")
 
 
 def _add_own(parser: Parser) -> None:
     parser.add_shared(
-        "config_dir", output="outputs folder (default: outputs)", jobs="number of processes of a sweep (default: 2)"
+        "config_dir",
+        output="outputs folder (default: outputs)",
+        jobs="number of processes of a sweep (default: 2)",
+        json="with --dry-run: print all cells as JSON",
     )
+    parser.add_argument("--dry-run", action="store_true", help="print cells and expected time; simulate nothing")
 
 
 def run(arguments: Namespace) -> int:
@@ -69,15 +76,41 @@ def simulate(words: Sequence[str]) -> int:
     """Simulate the run or the sweep of a line; print the folder as the last line."""
     own = Parser(prog="runner run", add_help=False)
     _add_own(own)
-    given, others = own.parse_known_args(words)
+    given, others = own.parse_known_args(_join_flags(words))
     typed = shlex.join(["runner", *words])
+    for shown in (word.partition("=")[2] for word in others if word.partition("=")[0] == "--cfg"):
+        if shown not in _SHOWN:
+            raise RunnerError(unknown("name", shown, _SHOWN, "--cfg"))
+        if any(word in _MANY for word in others):
+            raise RunnerError("--cfg: prints the config of one run. Leave out -m, and give each key one value.")
     if given.output is not None:
-        others.append(f"outputs={given.output}")
+        others.append(outputs_override(given.output))
     if given.jobs is not None:
         if not any(word in _MANY for word in others):
             raise RunnerError("--jobs: one run uses one process. Add -m for a sweep.")
         others.append(f"hydra.sweeper.workers={given.jobs}")
-    return _simulate(others, given.config_dir, typed)
+    if given.json and not given.dry_run:
+        raise RunnerError("--json: prints the cells of a preview. Add --dry-run.")
+    line, overrides = _read_line(others, given.config_dir)
+    if line.overrides is None:
+        return 0  # --cfg, --hydra-help and the like
+    if given.dry_run:
+        return _preview(line, overrides, given.config_dir, given.json)
+    return _simulate(line, overrides, given.config_dir, typed)
+
+
+def _join_flags(words: Sequence[str]) -> list[str]:
+    """Return a line in which Hydra's flags of the config are one word with their value, such as --cfg=job.
+
+    argparse would complete -c to -cd, and read the value of --package as an override.
+    """
+    joined: list[str] = []
+    for word in words:
+        if joined and joined[-1] in ("--cfg", "--package") and not word.startswith("-"):
+            joined[-1] += f"={word}"
+        else:
+            joined.append({"-c": "--cfg", "-p": "--package"}.get(word, word))
+    return joined
 
 
 class _Line:
@@ -106,24 +139,30 @@ class _Line:
         self.overrides, self.root = [*found["task"], *of_sweeper], node.job.config_name
 
 
-def _simulate(words: Sequence[str], config_dirs: Sequence[Path], command: str) -> int:
-    """Simulate the run or the sweep of a line with flags of Hydra; print its folder as the last line."""
-    from runner.config.compose.compose import compose
-    from runner.config.compose.composer import Composer
-
+def _read_line(words: Sequence[str], config_dirs: Sequence[Path]) -> tuple[_Line, list[str]]:
+    """Return a line, and its overrides without the prefix ++."""
     if any(word.startswith("-") and word not in _MANY for word in words):
         line = _read_by_hydra(words, config_dirs)
     else:
         line = _Line([word for word in words if word not in _MANY], any(word in _MANY for word in words))
-    if line.overrides is None:
-        return 0  # --cfg, --hydra-help and the like
-    overrides = [each.removeprefix("++") for each in line.overrides]
+    return line, [each.removeprefix("++") for each in line.overrides or ()]
+
+
+def _split(overrides: Sequence[str]) -> tuple[list[str], list[str]]:
+    """Return the overrides of the config, and those of the sweeper."""
+    ours = [each for each in overrides if not each.startswith(_OF_SWEEPER)]
+    return ours, [each for each in overrides if each.startswith(_OF_SWEEPER)]
+
+
+def _simulate(line: _Line, overrides: Sequence[str], config_dirs: Sequence[Path], command: str) -> int:
+    """Simulate the run or the sweep of a line; print its folder as the last line."""
+    from runner.config.compose.compose import compose
+    from runner.config.compose.composer import Composer
+
     if line.many:
         from runner.sweeps.run import sweep_typed
 
-        composer = Composer(config_dirs, line.root)
-        ours = [each for each in overrides if not each.startswith(_OF_SWEEPER)]
-        return print_sweep(sweep_typed(ours, composer.sweeper(overrides), composer, command))
+        return print_sweep(sweep_typed(*_split(overrides), Composer(config_dirs, line.root), command))
     composed = compose(overrides, config_dirs, line.root)
     from runner.config.validation import validate  # after the composition, so that errors are reported at once
 
@@ -131,23 +170,61 @@ def _simulate(words: Sequence[str], config_dirs: Sequence[Path], command: str) -
     from runner.sweeps.job import RunJob, perform  # after validation, for the same reason
 
     run, made = perform(RunJob(config))
+    for text in _idle_in_one_run(composed):
+        print(one_line(f"runner: warning: {text}"), file=sys.stderr)
     return print_run(run, made, composed.resolved.get("caveats"))
+
+
+def _idle_in_one_run(composed: "Composed") -> list[str]:
+    """Return a line for each key of sweeps that the command line or an experiment sets for a single run."""
+    from runner.config.compose.given_keys import given_keys, swept_keys
+
+    found = [f"{key}: no effect, because one run is made; add -m" for key in given_keys(composed) if key in _OF_SWEEPS]
+    if swept := swept_keys(composed):
+        name = f"experiment={composed.choices['experiment']}"
+        found.append(f"{name}: {', '.join(swept)} not swept, because one run is made; add -m")
+    return found
+
+
+def _preview(line: _Line, overrides: Sequence[str], config_dirs: Sequence[Path], as_json: bool) -> int:
+    """Print what the line would simulate."""
+    from runner.cli.preview import print_preview
+    from runner.config.compose.composer import Composer
+    from runner.sweeps.part import own_part
+    from runner.sweeps.plan import Grid
+    from runner.sweeps.preview import preview
+    from runner.sweeps.run import Engine
+    from runner.sweeps.typed import plan_typed
+
+    composer = Composer(config_dirs, line.root)
+    ours, of_sweeper = _split(overrides)
+    if line.many:
+        plan, sweeper = plan_typed(ours, composer, of_sweeper)
+        engine = Engine(sweeper.workers, sweeper.address)
+    else:
+        composer.load(overrides)  # rejects several values
+        plan, engine = Grid(ours, composer), Engine(0, None)
+    own = own_part(plan)
+    print_preview(own, preview(own, engine), as_json)
+    return 0
 
 
 def _read_by_hydra(words: Sequence[str], config_dirs: Sequence[Path]) -> _Line:
     """Return the overrides of a line with flags of Hydra, read by Hydra's command after a check of the config."""
-    import hydra
-    from hydra._internal.utils import get_args_parser
+    from hydra import version
+    from hydra._internal.utils import _run_hydra
     from hydra.types import RunMode
 
+    from runner.cli.hydra_parser import hydra_parser
     from runner.config.compose.composer import Composer
     from runner.config.compose.composition_errors import COMPOSITION_ERRORS, explain
     from runner.config.compose.overrides import force
-    from runner.config.compose.sources import checked_sources
+    from runner.config.compose.sources import VERSION_BASE, checked_sources
 
     line = _Line()
     sys.argv = ["runner", *user_overrides(), *force(words), *(_WITHOUT_OURS if "--hydra-help" in words else ())]
-    given, others = get_args_parser().parse_known_args()
+    parser = hydra_parser()
+    given, others = parser.parse_known_args()
     if others:
         own = Parser(prog="runner run", add_help=False)
         add_arguments(own)
@@ -159,7 +236,9 @@ def _read_by_hydra(words: Sequence[str], config_dirs: Sequence[Path]) -> _Line:
             Composer(config_dirs, root).load(given.overrides, mode=mode)  # checks what Hydra does not
         with checked_sources([folder.resolve() for folder in config_dirs]):
             # The absolute path works from a console script and from a wheel, where a relative one does not.
-            hydra.main(version_base="1.3", config_path=str(conf_dir()), config_name="config")(line)()
+            for base in VERSION_BASE.values():
+                version.setbase(base)
+            _run_hydra(given, parser, line, config_path=str(conf_dir()), config_name="config")
     except COMPOSITION_ERRORS as error:
         raise explain(error, config_dirs) from None
     return line
@@ -253,6 +332,7 @@ def print_sweep(ended: "Ended") -> int:
 def _print_cells(ended: "Ended", axes: "Sequence[Axis]") -> None:
     """Print the numbers of runs, the answer of the sweep, and the next commands."""
     from runner import store
+    from runner.base.machine import describe_mixture
     from runner.reporting.sweep.question import in_short
     from runner.reporting.sweep.subject import choose
     from runner.sweeps.finer_step import work_out_sweep
@@ -273,7 +353,7 @@ def _print_cells(ended: "Ended", axes: "Sequence[Axis]") -> None:
             from runner.reporting.sweep.spec import summary  # imports charts, which takes long
 
             spec = summary(subject, sweep)
-    for line in filter(None, (text, answer, spec)):
+    for line in filter(None, (text, describe_mixture(ended.ends.machines), answer, spec)):
         print(one_line(f"runner: {line}"), file=sys.stderr)
     here = ended.outputs.resolve() == outputs_dir().resolve()
     name = WORD if here else str(ended.folder)

@@ -6,6 +6,7 @@ Example: runner status latest
 import sys
 from argparse import Namespace
 
+from runner.base.sanitize import one_line
 from runner.cli.arguments import Parser, Stored
 
 
@@ -16,6 +17,7 @@ def add_arguments(parser: Parser) -> None:
 
 def run(options: Namespace) -> int:
     """Print the numbers of runs that are done, failed, left or have caveats, and the command that continues."""
+    from runner.base.machine import describe_mixture
     from runner.base.quantities import format_duration
     from runner.store import open_sweep
     from runner.sweeps.at_work import in_words
@@ -27,6 +29,8 @@ def run(options: Namespace) -> int:
         print(f"runner: {damage}", file=sys.stderr)
     failed = f" ({status.failed} of them failed)" if status.failed else ""
     print(f"{status.done + status.left} runs: {status.done} done{failed}, {status.left} left")
+    if mixture := describe_mixture(status.machines):
+        print(one_line(mixture))
     if any(status.caveats):
         with_some = sum(count > 0 for count in status.caveats)
         print(f"{with_some} of {len(status.caveats)} stored cells have caveats; `runner table` says which")

@@ -18,7 +18,7 @@ from pathlib import Path
 from runner.base.sanitize import one_line
 from runner.cli.arguments import Parser
 from runner.config.compose.files import outputs_dir
-from runner.study.changes import KINDS, Change, Value, changes, read_conclusions
+from runner.study.changes import KINDS, ROUNDED, Change, Value, changes, read_conclusions
 
 _TOLD = 20  # changes of a kind that are printed without --all
 
@@ -81,12 +81,15 @@ def _diff(options: Namespace) -> int:
     counts = Counter(change.kind for change in found)
     for kind in KINDS:
         of_kind = [change for change in found if change.kind == kind]
-        shown = of_kind if options.all else of_kind[:_TOLD]
+        shown = of_kind if options.all else [] if kind == ROUNDED else of_kind[:_TOLD]
         for change in shown:
             print(one_line(_told(change)))
-        if len(shown) < len(of_kind):
+        if 0 < len(shown) < len(of_kind):
             print(f"{kind}: {len(of_kind) - len(shown)} more; --all prints them")
-    print("; ".join(f"{kind}: {counts[kind]} changed" for kind in KINDS if counts[kind]) or "nothing changed")
+    rounded = counts.pop(ROUNDED, 0)
+    parts = [f"{kind}: {counts[kind]} changed" for kind in KINDS if counts[kind]] or ["nothing changed"]
+    parts += [f"{rounded} number{'s' if rounded > 1 else ''} equal up to rounding"] if rounded else []
+    print("; ".join(parts))
     return 0
 
 

@@ -74,9 +74,13 @@ def _format(options: Namespace) -> str:
 
 
 def _whole(folder: Path, measurements: "Measurements") -> int:
+    from runner.store.atomic import refuse_links
+    from runner.store.kinds import KINDS
     from runner.sweeps.differing import in_words
     from runner.sweeps.table import write_table
 
+    if folder.parent.name in (KINDS["sweep"].folder, KINDS["tuning"].folder):
+        refuse_links(folder.parent.parent, folder)
     columns = write_table(measurements, folder)
     doubted = sum(map(bool, measurements.caveats))
     count = f"{len(measurements.hashes)} cells, {measurements.failed} of them failed, {doubted} with caveats"

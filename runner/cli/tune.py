@@ -17,6 +17,7 @@ from runner.base import progress
 from runner.base.errors import RunnerError
 from runner.cli import report
 from runner.cli.arguments import Parser, count
+from runner.config.compose.files import outputs_override
 
 if TYPE_CHECKING:
     from runner.sweeps.tuning.study import Tuning
@@ -58,7 +59,7 @@ def run(options: argparse.Namespace) -> int:
     from runner.sweeps.tuning.objective import Objective
     from runner.sweeps.tuning.run import tune
 
-    outputs = [] if options.output is None else [f"outputs={options.output}"]
+    outputs = [] if options.output is None else [outputs_override(options.output)]
     tuning = tune(
         [*options.overrides, *outputs],
         [Objective(metric, direction) for direction, metric in objectives],

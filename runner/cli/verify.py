@@ -15,12 +15,15 @@ from typing import Literal
 
 from runner.base import progress
 from runner.base.errors import RunnerError
+from runner.base.sanitize import one_line
 from runner.cli.arguments import Parser
 from runner.config.compose.files import outputs_dir
 from runner.store.kinds import FILES, KINDS
 
-State = Literal["good", "unfinished", "damaged"]
-_WORDS: Mapping[State, str] = {"good": "as written", "unfinished": "unfinished", "damaged": "damaged"}
+State = Literal["good", "unfinished", "other version", "damaged"]
+_WORDS: Mapping[State, str] = {
+    "good": "as written", "unfinished": "unfinished", "other version": "of another version", "damaged": "damaged",
+}  # fmt: skip
 
 
 @dataclass(frozen=True)
@@ -29,7 +32,8 @@ class Found:
 
     Attributes:
         kind: Folder of its kind, such as "runs".
-        state: "good" if all checksums are right, "unfinished" if its writer was killed.
+        state: "good" if all checksums are right, "unfinished" if its writer was killed, "other version" if this
+            version cannot read it.
         problem: Damage, and the command that repairs it; empty if there is none.
     """
 
@@ -46,7 +50,7 @@ def add_arguments(parser: Parser) -> None:
 
 
 def run(options: Namespace) -> int:
-    """Print the numbers of stored results, and those that are damaged; return 1 if there are any."""
+    """Print the numbers of stored results, and those that cannot be read; return 1 if there are any."""
     if not options.outputs.is_dir():
         allowed = "an outputs folder, as in `runner verify outputs`"
         raise RunnerError(f"{options.outputs}: no such folder. Allowed: {allowed}.")
@@ -59,12 +63,12 @@ def run(options: Namespace) -> int:
     for kind in dict.fromkeys(each.kind for each in found):
         states = (f"{counts[kind, state]} {words}" for state, words in _WORDS.items() if counts[kind, state])
         print(f"{kind}: {', '.join(states)}")
-    damaged = [each.problem for each in found if each.state == "damaged"]
-    for problem in damaged:
-        print(problem)
+    problems = [each.problem for each in found if each.problem]
+    for problem in problems:
+        print(one_line(problem))
     if not found:
         print(f"nothing is stored in {options.outputs}")
-    return 1 if damaged else 0
+    return 1 if problems else 0
 
 
 def verify(outputs: Path) -> Iterator[Found]:
@@ -72,11 +76,8 @@ def verify(outputs: Path) -> Iterator[Found]:
 
     Args:
         outputs: The outputs folder.
-
-    Raises:
-        SchemaError: at the first result of another schema.
     """
-    from runner.store import DamagedError
+    from runner.store.seal import DamagedError, SchemaError
 
     folders = {of.folder: of for kind, of in KINDS.items() if kind != "report"}
     for name in sorted({*folders, *FILES}):
@@ -88,6 +89,8 @@ def verify(outputs: Path) -> Iterator[Found]:
             try:
                 _read(name, path)
                 yield Found(name, "good")
+            except SchemaError as error:
+                yield Found(name, "other version", str(error))
             except DamagedError as error:
                 yield Found(name, "damaged", str(error))
 

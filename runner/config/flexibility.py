@@ -5,6 +5,7 @@ import numpy as np
 from runner.base.errors import ConfigError
 from runner.config.run import RunConfig
 from runner.controllers.joint_space.motor_pd import MotorPdConfig
+from runner.environments.wall import WallConfig
 from runner.plants import Plant, options_of
 from runner.plants.decoupled import TorquePlantConfig, find_motion
 from runner.plants.flexible_joints import Flexibility, FlexibleJoints, MotorSide, links_of
@@ -12,7 +13,6 @@ from runner.plants.plant import unwrapped
 from runner.plants.rk4_flexible_links import Rk4FlexibleLinksConfig
 from runner.robots.robot import Robot, with_armature
 from runner.robots.vibration import stiffen_robot
-from runner.sensing.joint_torque import JointTorqueNoise
 
 _FASTEST = 0.5  # step h times largest rate: numerical damping ratio, (rate h)^5/144, is 2.2e-4 there
 
@@ -94,11 +94,11 @@ def _refused(config: RunConfig, plant: TorquePlantConfig, flexibility: Flexibili
             "plant.friction acts on the motors of flexible joints alone; take a list with 0 for the joints that are "
             "rigid"
         )
-    if config.environment.kind == "wall":
+    if type(config.environment) is WallConfig:
         problems.append("a wall is met by arms with rigid joints; take environment=push or environment=free")
     if config.loaded:
         problems.append("the payload cannot change on the way; take robot.payload.schedule=[]")
-    if isinstance(config.joint_torque_sensor, JointTorqueNoise):
+    if config.joint_torque_sensor is not None:
         problems.append("torque sensors are read at rigid joints; take joint_torque_sensor.noise=null")
     joints = options_of(config.plant).flexible_joints
     theta = joints is not None and joints.encoders == "motor" and joints.static_deflection == "unknown"
@@ -135,7 +135,7 @@ def check_flexible_links(config: RunConfig) -> None:
         problems.append("a force on the tip would act on rigid links; take environment=free and a law that feels none")
     if config.loaded:
         problems.append("the payload cannot change on the way; take robot.payload.schedule=[]")
-    if isinstance(config.joint_torque_sensor, JointTorqueNoise):
+    if config.joint_torque_sensor is not None:
         problems.append("torque sensors are read in rigid arms; take joint_torque_sensor.noise=null")
     problems = [f"plant.links: {problem}" for problem in problems]
     try:

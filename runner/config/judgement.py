@@ -84,6 +84,7 @@ THRESHOLDS: Mapping[str, tuple[str, Any, str]] = {
     ),
     "did_not_follow": ("share", PositiveFloat, "Allowed tip error as a fraction of the size of the tip's motion."),
     "joint_limits": ("excess", Radians[NonNegativeFloat], "Allowed excess of a joint over a position limit, in rad."),
+    "joint_speed": ("share", PositiveFloat, "Allowed speed of a joint as a fraction of its speed limit."),
     "exact_velocity": (
         "noise",
         Radians[NonNegativeFloat],
@@ -121,6 +122,11 @@ THRESHOLDS: Mapping[str, tuple[str, Any, str]] = {
         "share",
         _Share,
         "Allowed integration error of a metric, as a fraction; 1 disables the rule.",
+    ),
+    "rounding_grows": (
+        "share",
+        _Share,
+        "Allowed change of a metric through rounding, as a fraction; 1 disables the rule.",
     ),
 }
 

@@ -2,6 +2,7 @@
 
 from collections.abc import Mapping
 from dataclasses import dataclass, replace
+from typing import cast
 
 from runner.base.arrays import FloatArray
 from runner.config.composed import Composed
@@ -16,18 +17,17 @@ from runner.controllers.notch import NotchConfig
 from runner.plants import PLANTS, PlantConfig
 from runner.plants.motor_limits import TorqueLimits
 from runner.plugins.features import Commands
-from runner.plugins.registry import KindConfig, Kinds
-from runner.robots.mismatch import MISMATCHES, NONE, MismatchConfig
+from runner.plugins.registry import KindConfig
+from runner.robots.mismatch import MISMATCHES, MismatchConfig
 from runner.robots.model import RobotModel
 from runner.robots.robot import Robot
-from runner.sensing import JOINT_TORQUE_SENSORS, NOISES, WRIST_SENSORS
-from runner.sensing.encoders import EncoderNoise, exact_encoders
+from runner.sensing import NOISES
+from runner.sensing.encoders import EncoderNoise
 from runner.sensing.endpoint import EndpointSensorConfig
 from runner.trajectories import Trajectory
 
 # Fields that differ between configs of the same run, or that are new objects in each config.
 _OF_ONE_RUN = frozenset({"settings", "composed", "loaded", "timing"})
-_SENSED: tuple[Kinds, ...] = (NOISES, WRIST_SENSORS, JOINT_TORQUE_SENSORS, MISMATCHES)
 
 
 @dataclass(frozen=True)
@@ -45,11 +45,11 @@ class RunConfig:
         commands: Quantity that the loops command: joint torques, or joint positions for a plant that follows them.
         path: The desired motion of the tip.
         environment: Config of the environment of the tip, by the model of its kind.
-        noise: Noise and steps of each joint's encoder, or the config of user-supplied encoders.
+        noise: Noise and steps of each joint's encoder, or the config of encoders of another kind.
         torque_limits: Torque limits of all joints.
         wrist_sensor: Config of the force/torque sensor, by the model of its kind.
-        joint_torque_sensor: Errors of each joint's torque sensor, or the config of user-supplied sensors; None for no
-            sensors.
+        joint_torque_sensor: Errors of each joint's torque sensor, or the config of sensors of another kind; None for
+            no sensors.
         endpoint_sensor: Config of the sensor of the tip's position.
         mismatch: Config of the difference between the controllers' model and the robot, by the model of its kind.
         disturbance_observer: Config of the disturbance observer of the control laws.
@@ -108,31 +108,30 @@ class RunConfig:
         return (*parts, *times, self.settings.repetitions, *(part for each in several for part in each))
 
     @property
-    def plugged(self) -> dict[str, str]:
-        """Kinds of the user-supplied sensors and of a user-supplied mismatch, by group."""
-        parts = self.noise, self.wrist_sensor, self.joint_torque_sensor, self.mismatch
-        known = zip(_SENSED, parts, strict=True)
-        return {kinds.group: part.kind for kinds, part in known if part is not None and not kinds.is_ours(part.kind)}
+    def encoder_noise(self) -> EncoderNoise | None:
+        """Noise of the encoders that compiled loops contain; None for encoders of another kind."""
+        return cast(EncoderNoise, self.noise) if NOISES.is_compiled(self.noise.kind) else None
 
     @property
-    def encoder_noise(self) -> EncoderNoise:
-        """Noise of the built-in encoders; zero if encoders are user-supplied."""
-        return self.noise if isinstance(self.noise, EncoderNoise) else exact_encoders(self.arm.model.nq)
-
-    @property
-    def model_error(self) -> MismatchConfig:
-        """Built-in mismatch; none if the mismatch is user-supplied."""
-        return self.mismatch if isinstance(self.mismatch, MismatchConfig) else NONE
+    def model_error(self) -> MismatchConfig | None:
+        """Factors on the nominal model; None for a mismatch of another kind."""
+        return cast(MismatchConfig, self.mismatch) if MISMATCHES.is_compiled(self.mismatch.kind) else None
 
     @property
     def varies_model(self) -> bool:
-        """True if each repetition has another nominal model."""
-        return "mismatch" in self.plugged or self.model_error.varies
+        """True if each repetition may have another nominal model."""
+        return self.model_error is None or self.model_error.varies
+
+    @property
+    def interpreted(self) -> list[str]:
+        """Parts without a compiled form, such as "noise=hysteresis", which are interpreted in each control step."""
+        parts = ((NOISES, self.noise), (MISMATCHES, self.mismatch))
+        return [f"{kinds.group}={part.kind}" for kinds, part in parts if not kinds.is_compiled(part.kind)]
 
     @property
     def compilable(self) -> bool:
         """True if compiled code supports all sensors of the run and the controllers' model."""
-        return not self.plugged and not self.endpoint_sensor.read_by
+        return not self.interpreted and not self.endpoint_sensor.read_by
 
     @property
     def has_contact(self) -> bool:

@@ -16,7 +16,8 @@ class RunSettings(StrictModel):
         repetitions: Number of closed-loop runs in the job.
         duration: Length of a run, in s; None takes the duration of the trajectory.
         gravity: Magnitude of gravity along -z of the base, in m/s^2, for the plant and the controllers' model.
-        plant_error: True to compare the run with the same run on Runge-Kutta; see runner/metrics/plant_error.py.
+        plant_error: True to repeat repetition 0 on Runge-Kutta, and from a moved start; see
+            runner/metrics/plant_error.py and rounding.py.
         outputs: Folder in which runs are stored.
     """
 

@@ -19,6 +19,7 @@ from runner.config.cross_checks import (
     count_late,
     endpoint_ticks,
 )
+from runner.config.dependent_keys import check_dependent_keys
 from runner.config.desired_motion import check_path, check_points, check_repeats, start_posture
 from runner.config.flexibility import check_flexible_joints, check_flexible_links
 from runner.config.groups import read_groups
@@ -34,9 +35,8 @@ from runner.plants import PLANTS, PlantConfig, options_of
 from runner.plugins.registry import KindConfig
 from runner.robots.mismatch import MismatchConfig, check_links
 from runner.robots.robot import Robot, end_points
-from runner.sensing.encoders import NoiseConfig
+from runner.sensing import values_by_joint
 from runner.sensing.force_torque import ForceTorqueConfig
-from runner.sensing.joint_torque import JointTorqueConfig
 from runner.trajectories import TRAJECTORIES, HasStart, Trajectory
 from runner.trajectories.joint_motion import TipOfJoints
 
@@ -61,8 +61,8 @@ def validate(composed: Composed) -> RunConfig:
     plant, controller = groups.get("plant"), groups.get("controller")
     problems.recall(_check_payload, robot, groups.get("mismatch"))
     outline = problems.recall(read_outline, robot, composed.config_dirs)
-    noise = problems.recall(_by_joint, groups.get("noise"), outline)
-    torque_sensor = problems.recall(_by_joint, groups.get("joint_torque_sensor"), outline)
+    noise = problems.recall(_by_joint, "noise", groups.get("noise"), outline)
+    torque_sensor = problems.recall(_by_joint, "joint_torque_sensor", groups.get("joint_torque_sensor"), outline)
     torque_limits = problems.recall(TorqueLimitsConfig.by_joint, groups.get("torque_limits"), outline)
     problems.recall(_check_commands, plant, controller)
     steps = problems.recall(count_steps, outline, plant, controller)
@@ -93,8 +93,8 @@ def _build(groups: Parts, arm: Robot, steps: Steps, problems: Problems) -> Parts
         ConfigError: with every problem found.
     """
     plant, controller, trajectory = groups["plant"], groups["controller"], groups["trajectory"]
-    build_loops = problems.recall if CONTROLLERS.is_ours(controller.kind) else problems.attempt
-    build_path = problems.recall if TRAJECTORIES.is_ours(trajectory.kind) else problems.attempt
+    build_loops = problems.attempt if CONTROLLERS.is_user_supplied(controller.kind) else problems.recall
+    build_path = problems.attempt if TRAJECTORIES.is_user_supplied(trajectory.kind) else problems.recall
     ignore_base_rotation = problems.recall(_ignores_base_rotation, arm, plant)
     path = build_path(_build_path, arm, trajectory, ignore_base_rotation)
     loops = build_loops(CONTROLLERS.build_for, controller, arm, isinstance(path, TipOfJoints))
@@ -129,18 +129,14 @@ def _shape(groups: Parts, arm: Robot, path: Trajectory, loops: tuple[Loop, ...])
 _PARTS = {field.name for field in fields(RunConfig)}
 # Checks of the whole config.
 _CHECKS: Sequence[Callable[[RunConfig], object]] = (
-    check_schedule, check_computation, check_observer, check_notch, check_flexible_joints, check_flexible_links,
-    check_reading, endpoint_ticks, check_repeats,
+    check_dependent_keys, check_schedule, check_computation, check_observer, check_notch, check_flexible_joints,
+    check_flexible_links, check_reading, endpoint_ticks, check_repeats,
 )  # fmt: skip
 
 
-def _by_joint(sensor: KindConfig, outline: RobotOutline) -> KindConfig | None:
-    """Return the errors of each joint's sensor, None without sensors; the config itself for user-supplied sensors.
-
-    Raises:
-        ConfigError: for values that do not fit the robot.
-    """
-    return sensor.by_joint(outline.joint_units) if isinstance(sensor, NoiseConfig | JointTorqueConfig) else sensor
+def _by_joint(group: str, sensor: KindConfig, outline: RobotOutline) -> KindConfig | None:
+    """Return the values of each joint's sensor, None without sensors; see values_by_joint."""
+    return values_by_joint(group, sensor, outline.joint_units)
 
 
 def _check_payload(robot: RobotConfig, mismatch: KindConfig) -> None:

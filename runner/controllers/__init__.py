@@ -2,6 +2,7 @@
 
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, replace
+from functools import partial
 from types import ModuleType
 from typing import Any, Protocol, runtime_checkable
 
@@ -38,6 +39,8 @@ class ControllerFeatures(Features):
             it would leave is rejected before the run, with the reason.
         FOLLOWS_JOINTS: True if its laws can follow a desired joint motion. `build` then has an argument `joints`. If
             that is True, the loops take a reference of shape (3, nq): joint positions, velocities and accelerations.
+        TAKES_DRAWN: True if `build` also takes a robot whose models are DrawnModels. The nominal models of several
+            repetitions are then drawn as arrays.
         start_posture: Function of the config, the robot and the start of the tip, shape (3,), in m, that returns the
             joint positions at the start, shape (nq,), in rad, or None for no preference. It raises a LinAlgError if
             there is no such configuration.
@@ -45,6 +48,7 @@ class ControllerFeatures(Features):
 
     FOLLOWS_PATHS: bool = False
     FOLLOWS_JOINTS: bool = False
+    TAKES_DRAWN: bool = False
     start_posture: Callable[[Any, Robot, FloatArray], FloatArray | None] = _no_posture
 
 
@@ -145,11 +149,7 @@ class Controllers(Registry[ControllerConfig, [Robot], tuple[Loop, ...]]):
         """
         if not (joints and self.features(config.kind).FOLLOWS_JOINTS):
             return self.build(config, robot)
-        make = self.module(config.kind).build
-        if self.is_ours(config.kind):
-            loops: tuple[Loop, ...] = make(config, robot, joints=True)
-            return loops
-        return guard_loops(self.ask(config, make, robot, joints=True), config, robot)
+        return self.build_by(partial(self.module(config.kind).build, joints=True), config, robot)
 
     def module(self, kind: str) -> ModuleType:
         """Return the module of a kind; see Kinds. A kind that is one function has the module of function_module."""
@@ -178,12 +178,10 @@ class Controllers(Registry[ControllerConfig, [Robot], tuple[Loop, ...]]):
         """Return the joint positions at the start of a trajectory, or None for no preference; see ControllerFeatures.
 
         Raises:
-            ConfigError: if a user-supplied module does not return a configuration of the robot.
+            ConfigError: if the module does not return a configuration of the robot.
             numpy.linalg.LinAlgError: if there is no such configuration.
         """
         features = self.features(config.kind)
-        if self.is_ours(config.kind):
-            return features.start_posture(config, robot, start)
         wanted = self.ask(config, features.start_posture, robot, start)
         fault = None if wanted is None else find_fault(wanted, robot.home.shape)
         if fault:

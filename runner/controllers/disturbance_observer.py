@@ -1,5 +1,6 @@
 """Momentum-based disturbance observer for any torque controller."""
 
+import math
 from collections.abc import Sequence
 from dataclasses import replace
 from typing import Literal, NamedTuple, cast
@@ -95,7 +96,7 @@ class MomentumObserver(TorqueFilter):
         self.reads_joint_torques = reads_joint_torques
         self.models = (robot.model,)
         self._first, self._end, self._late = joints.start, joints.stop, late
-        gain = float(-np.expm1(-bandwidth * period))
+        gain = -math.expm1(-bandwidth * period)
         self.parameters = ObserverParameters(gain, period, limits, robot.model.gravity)
 
     @property

@@ -10,6 +10,7 @@ import numpy as np
 
 from runner.base.arrays import FloatArray
 from runner.base.lazy_modules import pin
+from runner.base.portable import dot
 from runner.controllers.controller import Controller
 from runner.robots.model import RobotModel
 from runner.symbolic.maths import NUMPY, Array, Backend, Scalar
@@ -149,8 +150,8 @@ class PinocchioArm:
         """Return the generalised momenta and their rate without torques; see Arm."""
         model, data = self._model, self._data
         M, C = pin.crba(model, data, q), pin.computeCoriolisMatrix(model, data, q, dq)
-        p = (M + np.triu(M, 1).T - np.tril(M, -1)).dot(dq)
-        rate = C.T.dot(dq)
+        p = dot(M + np.triu(M, 1).T - np.tril(M, -1), dq)
+        rate = dot(C.T, dq)
         before = self._gravity.copy()
         self._gravity[:] = gravity
         rate = rate - pin.computeGeneralizedGravity(model, data, q)

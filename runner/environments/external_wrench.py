@@ -2,6 +2,7 @@
 
 import numpy as np
 
+from runner.base import portable
 from runner.base.arrays import FloatArray
 from runner.base.errors import ConfigError, nearest
 from runner.base.lazy_modules import pin
@@ -77,12 +78,12 @@ class Interaction:
         J = pin.getFrameJacobian(model, data, self._tip, pin.LOCAL_WORLD_ALIGNED)
         applied, on_joints = np.zeros(6), None
         if self._environment is not None:
-            applied = self._environment.wrench(time, tip.translation.copy(), J[:3] @ dq)
+            applied = self._environment.wrench(time, tip.translation.copy(), portable.dot(J[:3], dq))
             on_joints = self._environment.joint_torques(time, q, dq)
         self.external[:] = applied + contact
         self.external[3:] -= cross(tip.translation, contact[:3])
         self.load[:] = self._load_on_flange(tip)
-        torques: FloatArray = J.T @ applied
+        torques = portable.dot(J.T, applied)
         if self._pushed is not None:
             torques += self._pushed.torques(time, model, data, dq)
         if on_joints is not None:

@@ -5,6 +5,7 @@ from typing import Annotated, Literal
 import numpy as np
 from pydantic import Field, NonNegativeFloat, PositiveFloat, field_validator
 
+from runner.base import portable
 from runner.base.arrays import FloatArray
 from runner.environments import Environment
 from runner.schema.model import StrictModel
@@ -66,7 +67,7 @@ class Wall(Environment):
 
     def __init__(self, config: WallConfig) -> None:
         self.config = config
-        self.normal: FloatArray = np.array(config.normal) / np.linalg.norm(config.normal)
+        self.normal: FloatArray = portable.unit(np.array(config.normal))
         self.point = np.zeros(3)
         self._sticks_at: FloatArray | None = None
 
@@ -77,11 +78,11 @@ class Wall(Environment):
 
     def wrench(self, time: float, tip: FloatArray, velocity: FloatArray) -> FloatArray:
         """Return the wrench on the tip; calls must be in the order of time; see Environment.wrench."""
-        depth = float((self.point - tip) @ self.normal)
+        depth = float(portable.dot(self.point - tip, self.normal))
         if depth <= 0.0:
             self._sticks_at = None
             return np.zeros(6)
-        force = self.config.stiffness * depth - self.config.damping * float(velocity @ self.normal)
+        force = self.config.stiffness * depth - self.config.damping * float(portable.dot(velocity, self.normal))
         push = max(force, 0.0) * self.normal
         if self.config.friction:
             push = push + self._friction(self.config.friction * max(force, 0.0), tip, velocity)
@@ -89,12 +90,12 @@ class Wall(Environment):
 
     def _friction(self, limit: float, tip: FloatArray, velocity: FloatArray) -> FloatArray:
         """Return the force along the surface, shape (3,), in N, and update the point where the tip sticks."""
-        stiffness, n = self.config.stiffness, self.normal
-        place, drag = tip - (tip @ n) * n, self.config.damping * (velocity - (velocity @ n) * n)
+        stiffness, n, dot = self.config.stiffness, self.normal, portable.dot
+        place, drag = tip - dot(tip, n) * n, self.config.damping * (velocity - dot(velocity, n) * n)
         if self._sticks_at is None:
             self._sticks_at = place
         pull: FloatArray = stiffness * (self._sticks_at - place) - drag
-        size = float(np.linalg.norm(pull))
+        size = portable.norm(pull)
         if size > limit:
             pull *= limit / size
             self._sticks_at = place + (pull + drag) / stiffness

@@ -13,9 +13,10 @@ import numpy as np
 
 from runner.base.trace import Trace
 
+COMPARED = ("bullet", "mujoco")
+"""Plants whose integration error is estimated."""
 PLANT = "rk4"
 """The plant with which others are compared."""
-COMPARED = ("bullet", "mujoco")
 PARTED = 4.0
 """Distance of the tips, in settling bands, beyond which two motions have parted. In runs of studies, the distance is at
 most 3 bands if no torque is at its limit, and 4.9 or more, mostly 10 to 55, if the motions take different paths."""
@@ -99,7 +100,8 @@ def compare(trace: Trace, metrics: Metrics, other: Trace, others: Metrics, band:
         step: Step of the Runge-Kutta plant, in s.
     """
     rows = min(len(trace.t), len(other.t))
-    distance = np.linalg.norm(trace.tip[:rows] - other.tip[:rows], axis=1)
+    with np.errstate(over="ignore", invalid="ignore"):  # of two runs that diverge
+        distance = np.linalg.norm(trace.tip[:rows] - other.tip[:rows], axis=1)
     parted = _parting(trace, other, distance, band)
     finite = np.flatnonzero(np.isfinite(distance))  # the last positions of a diverging run can be infinite or NaN
     farthest = finite[distance[finite].argmax()]

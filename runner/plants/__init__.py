@@ -68,7 +68,7 @@ class PlantFeatures(Features):
             integrate by the classical Runge-Kutta scheme, or None if the plants model more. Runs of such bodies may be
             compiled.
         modes: Function of the config, the robot and a configuration. It returns the modes of a flexible robot with its
-            motors held, by frequency; see find_modes. Modes of flexible joints follow from the config.
+            motors held, by frequency; see find_modes.
         moves_exactly: Function of the config. It returns True if a step integrates positions exactly under a constant
             force, and False if it uses the velocity at its end.
     """
@@ -150,13 +150,8 @@ class Plants(Registry[PlantConfig, [Robot, float, int], Plant]):
         return self.features(config.kind).motion(config, robot)
 
     def modes(self, config: PlantConfig, robot: Robot, q: FloatArray) -> list[Mode]:
-        """Return the modes of a built-in plant about a configuration, motors held; none if it is rigid."""
-        if not self.is_ours(config.kind):
-            return []
-        joints = options_of(config).flexible_joints
-        if joints is not None:
-            return joints.modes(robot, q)
-        return self.features(config.kind).modes(config, robot, q)
+        """Return the modes of a plant about a configuration, motors held; none if it is rigid."""
+        return self.ask(config, self.features(config.kind).modes, robot, q)
 
 
 PLANTS = Plants(

@@ -13,6 +13,7 @@ from runner.plants.compiled_motion import CompiledLinksTorque
 from runner.plants.decoupled import TorquePlantConfig, assemble_flexible, assemble_plant
 from runner.plants.decoupled import default_step as default_step
 from runner.plants.flexible_config import FlexibleJointsConfig
+from runner.plants.flexible_config import modes as modes
 from runner.plants.plant import Plant
 from runner.robots.model import RobotModel
 from runner.robots.mounting import TOOL_MOUNT

@@ -1,6 +1,6 @@
 """Config of flexible joints: springs between motors and links."""
 
-from typing import Literal
+from typing import Literal, Protocol
 
 import numpy as np
 from pydantic import NonNegativeFloat
@@ -81,13 +81,6 @@ class FlexibleJointsConfig(StrictModel):
         torsion_feedback[flexible] = 2.0 * self.torsion_damping * np.sqrt(springs[flexible] * motors[flexible])
         return Flexibility(springs, motors, damping, self._find_brake_time(arm, flexible), torsion_feedback)
 
-    def modes(self, arm: Robot, q: FloatArray) -> list[Mode]:
-        """Return the modes of a robot's joints about a configuration, motors held, by frequency; see find_modes."""
-        flexibility = self.by_joint(arm)
-        on = flexibility.flexible
-        M = links_of(arm.model, on).mass_matrix(q)[np.ix_(on, on)]
-        return find_modes(M, np.diag(flexibility.damping[on]), np.diag(flexibility.stiffness[on]))
-
     def _find_brake_time(self, arm: Robot, flexible: np.ndarray) -> FloatArray:
         """Return the time at which each joint is braked, shape (nq,), in s."""
         brake_time, stages, key = np.full(len(flexible), np.inf), arm.stage_names, "plant.flexible_joints.brake_time"
@@ -105,3 +98,22 @@ class FlexibleJointsConfig(StrictModel):
         if problems:
             raise ConfigError(problems)
         return brake_time
+
+
+class HasFlexibleJoints(Protocol):
+    """Config of a plant whose joints may be flexible."""
+
+    @property
+    def flexible_joints(self) -> FlexibleJointsConfig | None:
+        """Springs between motors and links; None for rigid joints."""
+        ...
+
+
+def modes(config: HasFlexibleJoints, robot: Robot, q: FloatArray) -> list[Mode]:
+    """Return the modes of flexible joints about a configuration, motors held; none for rigid joints; see find_modes."""
+    if config.flexible_joints is None:
+        return []
+    flexibility = config.flexible_joints.by_joint(robot)
+    on = flexibility.flexible
+    M = links_of(robot.model, on).mass_matrix(q)[np.ix_(on, on)]
+    return find_modes(M, np.diag(flexibility.damping[on]), np.diag(flexibility.stiffness[on]))

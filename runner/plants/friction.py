@@ -3,7 +3,8 @@
 import numpy as np
 
 from runner.base.arrays import FloatArray
-from runner.base.lazy_modules import lapack, pin
+from runner.base.lazy_modules import pin
+from runner.base.portable import solve_symmetric
 from runner.plants.flexible_joints import FlexibleJoints
 from runner.plants.friction_law import JointFriction
 from runner.plants.plant import Plant, PlantWrapper
@@ -93,7 +94,7 @@ class Frictional(_Friction):
         M += np.triu(M, 1).T
         damping, level = self._law.at(self.dq, self._direction == 0.0)
         pushed = M @ self.dq + h * (tau + self._contact_torque() - bias - self._law.asymmetry)
-        _, columns, _ = lapack.dposv(M + np.diag(h * damping), np.column_stack([pushed, h * np.eye(len(tau))]))
+        columns = solve_symmetric(M + np.diag(h * damping), np.column_stack([pushed, h * np.eye(len(tau))]))
         speed, mobility = columns[:, 0], columns[:, 1:]
         mu, self._direction = stopping_torques(mobility, speed, level, self._direction)
         friction: FloatArray = damping * (speed - mobility @ mu) + mu + self._law.asymmetry
@@ -168,7 +169,7 @@ def stopping_torques(
         held = direction == 0.0
         left = speed - mobility @ mu
         if held.any():
-            mu[held] = np.linalg.solve(mobility[np.ix_(held, held)], left[held])
+            mu[held] = solve_symmetric(mobility[np.ix_(held, held)], left[held])
             left = speed - mobility @ mu
         too_much = np.where(held, np.abs(mu) - limit, -left * direction / np.diagonal(mobility))
         wrong = np.flatnonzero(too_much > _ROUNDING * (limit + np.abs(speed) / np.diagonal(mobility)))

@@ -8,6 +8,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from runner.base import portable
 from runner.base.arrays import FloatArray
 from runner.base.errors import ConfigError
 from runner.schema.values import FrictionConfig, expand
@@ -60,7 +61,7 @@ class JointFriction:
     @cached_property
     def odds(self) -> FloatArray:
         """exp(-phi_2 phi_3) for joints that move up, and its inverse for those that move down, shape (2, n)."""
-        found: FloatArray = np.exp(np.array([[-1.0], [1.0]]) * self.sigmoid[1] * self.sigmoid[2])
+        found: FloatArray = portable.exp(np.array([[-1.0], [1.0]]) * self.sigmoid[1] * self.sigmoid[2])
         return found
 
     @cached_property
@@ -92,14 +93,15 @@ class JointFriction:
         """Return w in motion, shape (n,)."""
         falls = self.stribeck_speed > 0.0
         share = speed / np.where(falls, self.stribeck_speed, 1.0)
-        return np.where(falls, np.exp(-(share**self.exponent)), 0.0)
+        return np.where(falls, portable.exp(-(share**self.exponent)), 0.0)
 
     def _secant(self, v: FloatArray) -> FloatArray:
         """Return sigma(v) / v, shape (n,), in N m s/rad."""
         up, y = v >= 0.0, self.sigmoid[1] * np.abs(v)
-        slope, odds = np.where(up, *self.slopes), np.where(up, *self.odds)
-        share = np.where(y > 0.0, -np.expm1(-y) / np.where(y > 0.0, y, 1.0), 1.0)
-        found: FloatArray = slope * share / (1.0 + odds * np.exp(-y))
+        slope = np.where(up, self.slopes[0], self.slopes[1])
+        odds = np.where(up, self.odds[0], self.odds[1])
+        share = np.where(y > 0.0, -portable.expm1(-y) / np.where(y > 0.0, y, 1.0), 1.0)
+        found: FloatArray = slope * share / (1.0 + odds * portable.exp(-y))
         return found
 
 

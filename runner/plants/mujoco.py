@@ -10,10 +10,11 @@ from pydantic import Field
 
 from runner.base.arrays import FloatArray
 from runner.base.errors import ConfigError
-from runner.base.lazy_modules import pin
+from runner.base.lazy_modules import eigen, pin
 from runner.plants.decoupled import TorquePlantConfig, assemble_flexible, assemble_plant
 from runner.plants.decoupled import default_step as default_step
 from runner.plants.flexible_config import FlexibleJointsConfig
+from runner.plants.flexible_config import modes as modes
 from runner.plants.plant import Plant
 from runner.robots.model import RobotModel
 from runner.robots.mounting import TOOL_MOUNT
@@ -21,10 +22,9 @@ from runner.robots.robot import Robot
 from runner.schema.units import AxisInertia
 
 IMPLICIT_CONTACT = True  # a wall's spring and damper act in each step, from the velocity at its end
-Integrator = Literal["euler", "implicitfast", "rk4"]
+Integrator = Literal["euler", "rk4"]
 _INTEGRATORS = {
     "euler": mujoco.mjtIntegrator.mjINT_EULER,
-    "implicitfast": mujoco.mjtIntegrator.mjINT_IMPLICITFAST,
     "rk4": mujoco.mjtIntegrator.mjINT_RK4,
 }
 mujoco.set_mju_user_warning(lambda text: None)  # MuJoCo would print, and write to a file, what the loop reports
@@ -46,8 +46,8 @@ class MujocoConfig(TorquePlantConfig):
         kind: Name in the registry.
         step: Integration step, in s; None selects a tenth of the fastest controller period, a quarter with several
             stages.
-        integrator: Semi-implicit Euler (euler); the same with damping forces at the end of the step, identical without
-            damping (implicitfast); or the classical Runge-Kutta scheme (rk4).
+        integrator: Semi-implicit Euler (euler) or the classical Runge-Kutta scheme (rk4). MuJoCo's implicit schemes
+            would equal euler, because friction of the joints acts outside MuJoCo's model.
         in_place_of: The missing default plant that this one replaces, reported by the caveat default_plant; None if
             this plant was selected.
         min_inertia: Smallest mass and principal moment of inertia of a moving link, in kg and kg m^2. Smaller values
@@ -230,7 +230,7 @@ def _refused(error: ValueError) -> ConfigError:
 
 def _is_flat(body: Any) -> bool:
     """Return True if a body's inertia about an axis is nearly zero, which MuJoCo rejects in a tensor."""
-    moments = np.linalg.eigvalsh(_tensor(body))
+    moments = eigen.SelfAdjointEigenSolver(_tensor(body)).eigenvalues()
     return bool(moments[0] < _LEAST_OF_TENSOR and moments.any())
 
 
@@ -244,8 +244,8 @@ def _give_inertia(body: Any, least: float) -> None:
 
     A disc's moment may exceed it by rounding, which MuJoCo rejects.
     """
-    moments, axes = np.linalg.eigh(_tensor(body))
-    moments = np.maximum(moments, least)
+    principal = eigen.SelfAdjointEigenSolver(_tensor(body))
+    moments, axes = np.maximum(principal.eigenvalues(), least), principal.eigenvectors().copy()
     moments[0] = max(moments[0], (1.0 + _ROUNDING) * moments[2] - moments[1])
     axes[:, 0] *= np.linalg.det(axes)  # right-handed
     along = pin.Quaternion(*body.iquat.tolist()) * pin.Quaternion(axes)

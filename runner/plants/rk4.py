@@ -10,6 +10,7 @@ from runner.base.lazy_modules import pin
 from runner.plants.compiled_motion import CompiledStep
 from runner.plants.decoupled import Motion, TorquePlantConfig, assemble_flexible, assemble_plant, find_motion
 from runner.plants.flexible_config import FlexibleJointsConfig
+from runner.plants.flexible_config import modes as modes
 from runner.plants.flexible_joints import runge_kutta
 from runner.plants.plant import Plant
 from runner.robots.model import RobotModel

@@ -4,7 +4,8 @@ import numpy as np
 from pydantic import NonNegativeFloat, PositiveFloat
 
 from runner.base.arrays import FloatArray
-from runner.base.lazy_modules import lapack, pin
+from runner.base.lazy_modules import pin
+from runner.base.portable import solve_symmetric
 from runner.plants.motor_limits import TorqueLimits
 from runner.plants.plant import Plant, PlantWrapper
 from runner.robots.model import RobotModel
@@ -124,13 +125,13 @@ class ServoLaw:
         """
         model, data, h = self._model, self._data, self._period
         bias = pin.nonLinearEffects(model, data, q, dq).copy()
-        M = pin.crba(model, data, q)  # dposv reads only its upper triangle
+        M = pin.crba(model, data, q)  # fills the upper triangle only
         G = pin.computeGeneralizedGravity(model, data, q) if self._gravity_compensation else 0.0
         spring = self._stiffness * (position - q - h * dq)
         slip = velocity - dq
         np.einsum("ii->i", M)[:] += self._added_inertia
         asked = spring + self._damping * slip + G
-        _, ddq, _ = lapack.dposv(M, asked - bias)
+        ddq = solve_symmetric(M.T, asked - bias)
         tau: FloatArray = asked - self._added_inertia * ddq
         return tau
 

@@ -5,6 +5,7 @@ from typing import Protocol
 
 import numpy as np
 
+from runner.base import portable
 from runner.base.arrays import FloatArray
 from runner.base.lazy_modules import pin
 from runner.plants.plant import Plant, PlantWrapper
@@ -74,11 +75,10 @@ class WithTipContact(PlantWrapper):
         pin.computeJointJacobians(model, data, self.q + ahead * self.dq)
         tip = pin.updateFramePlacement(model, data, self._tip)
         J = pin.getFrameJacobian(model, data, self._tip, pin.LOCAL_WORLD_ALIGNED)
-        applied = self._surface.wrench(self._time + ahead, tip.translation.copy(), J[:3] @ self.dq)
+        applied = self._surface.wrench(self._time + ahead, tip.translation.copy(), portable.dot(J[:3], self.dq))
         self._wrench[:] = applied
         self._wrench[3:] += np.cross(tip.translation, applied[:3])
-        load: FloatArray = J.T @ applied
-        return load
+        return portable.dot(J.T, applied)
 
     def contact_wrench(self) -> FloatArray:
         """Return the wrench of the surface on the arm in the current state; see Plant."""

@@ -13,9 +13,12 @@ class Features:
 
     Attributes:
         COMMANDS: Command that a controller returns or a plant takes.
+        COMPILED: True if compiled code contains the encoders or the nominal model that the module builds. Runs with
+            others are interpreted.
     """
 
     COMMANDS: Commands = "torque"
+    COMPILED: bool = False
 
 
 F = TypeVar("F", bound=Any)

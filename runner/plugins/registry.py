@@ -66,13 +66,17 @@ class Kinds:
             )
         return model
 
-    def is_ours(self, kind: str) -> bool:
-        """Return True if a kind is built-in; such a part needs no guard."""
-        return self.module(kind).__name__.startswith("runner.")
+    def is_user_supplied(self, kind: str) -> bool:
+        """Return True if a kind is not built-in: its part is guarded, and runs do not share it."""
+        return not self.module(kind).__name__.startswith("runner.")
 
     def commands(self, kind: str) -> Commands:
         """Return the command that a kind of controllers returns or a kind of plants takes."""
         return read_features(Features, self.module(kind)).COMMANDS
+
+    def is_compiled(self, kind: str) -> bool:
+        """Return True if compiled code contains the encoders or the nominal model of a kind; see Features."""
+        return read_features(Features, self.module(kind)).COMPILED
 
     def module(self, kind: str) -> ModuleType:
         """Return the module of a kind.
@@ -132,23 +136,30 @@ class Registry(Kinds, Generic[C, P, T]):
     def build(self, config: C, *args: P.args, **kwargs: P.kwargs) -> T:
         """Build the part that a validated config describes; the other arguments depend on the group only.
 
-        A user-supplied module receives copies of the arguments, and its part is guarded.
+        Raises:
+            ConfigError: see `build_by`.
+        """
+        return self.build_by(self.module(config.kind).build, config, *args, **kwargs)
+
+    def build_by(self, make: Callable[Concatenate[C, P], T], config: C, /, *args: P.args, **kwargs: P.kwargs) -> T:
+        """Build a part by a function of its module; a user-supplied part is guarded.
 
         Raises:
-            ConfigError: if a user-supplied module raises an exception; the message contains its line.
+            ConfigError: see `ask`.
         """
-        make: Callable[Concatenate[C, P], T] = self.module(config.kind).build
-        if self.is_ours(config.kind):
-            return make(config, *args, **kwargs)
         built = self.ask(config, make, *args, **kwargs)
-        return built if self.guard is None else self.guard(built, config, *args, **kwargs)
+        if self.guard is None or not self.is_user_supplied(config.kind):
+            return built
+        return self.guard(built, config, *args, **kwargs)
 
     def ask(self, config: C, function: Callable[Concatenate[C, P2], A], *args: P2.args, **kwargs: P2.kwargs) -> A:
-        """Return the result of a function of a user-supplied module, which receives copies of its arguments.
+        """Return the result of a function of a kind's module; a user-supplied one receives copies of its arguments.
 
         Raises:
-            ConfigError: if the function raises an exception; the message contains its line.
+            ConfigError: if a user-supplied function raises an exception; the message contains its line.
         """
+        if not self.is_user_supplied(config.kind):
+            return function(config, *args, **kwargs)
         own, handed, named = copy.deepcopy((config, args, kwargs))
         try:
             return function(own, *handed, **named)

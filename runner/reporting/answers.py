@@ -12,6 +12,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from runner.base.quantities import ROUNDING, choose_unit, number, quantity, with_ends
+from runner.metrics.rounding import SENSITIVE
 from runner.reporting.comparison.pairs import Pairs, compare, label_text
 from runner.reporting.metric_titles import capital, title
 from runner.reporting.table import Cell, Column, Number, numbers
@@ -76,6 +77,15 @@ class Asked:
         return label_text(self.at) if self.at else "all"
 
     @property
+    def within_rounding(self) -> bool:
+        """True if no pair differs by more than rounding changes the metric."""
+        return self._differs_at_most(max(_EQUAL, self.comparison.rounding))
+
+    def _differs_at_most(self, share: float) -> bool:
+        known = [abs(median) for median in self.comparison.medians if np.isfinite(median)]
+        return bool(np.abs(self.comparison.differences).max() <= max(ROUNDING, share * max(known, default=0.0)))
+
+    @property
     def full_names(self) -> tuple[str, str]:
         """The names; numbers with their axis, such as "controller.period=0.01"."""
         axis = self.pairs.axis if self.pairs else ""
@@ -118,9 +128,8 @@ class Answer(Asked):
 
     @property
     def equal(self) -> bool:
-        """True if all pairs are equal up to rounding."""
-        known = [abs(median) for median in self.comparison.medians if np.isfinite(median)]
-        return bool(np.abs(self.comparison.differences).max() <= max(ROUNDING, _EQUAL * max(known, default=0.0)))
+        """True if all pairs are equal up to rounding, and their signs show no difference if rounding is not small."""
+        return self._differs_at_most(_EQUAL) or (self.within_rounding and not self.sign)
 
     @property
     def sign(self) -> int:
@@ -185,7 +194,9 @@ class Answer(Asked):
         first, second = (f"{name} ({size})" for name, size in zip(self.full_names, sizes, strict=True))
         head = f"{capital(title(self.metric))}:"
         if self.equal:
-            return f"{head} {first} and {second} are equal up to rounding ({self.comparison.n} pairs)."
+            return (
+                f"{head} {first} and {second} are equal up to rounding{self._rounding()} ({self.comparison.n} pairs)."
+            )
         one, other = self.comparison.medians
         if self.sign > 0 and self.share and other >= _TIMES * one > 0.0:
             times = number(other / one, 2)
@@ -235,6 +246,11 @@ class Answer(Asked):
         known = np.isfinite(size) and np.isfinite(median) and abs(median) > ROUNDING and "fraction" not in self.metric
         return f"{number(100.0 * size / abs(median), 2)} %" if known else ""
 
+    def _rounding(self) -> str:
+        """Return by how much rounding changes the metric, to follow a phrase; empty if that is known to be small."""
+        share = self.comparison.rounding
+        return f", which changes it by {number(100.0 * share, 2)} %" if share > SENSITIVE else ""
+
     def _evidence(self) -> str:
         """Return the difference with its interval, p and number of pairs as a phrase."""
         found = self.comparison
@@ -255,7 +271,8 @@ class Answer(Asked):
         found = self.comparison
         first, second, difference = self._alike([*found.medians, found.difference])
         if self.equal:
-            return [first, second, "0", "equal up to rounding"]
+            shown = "0" if self._differs_at_most(_EQUAL) else difference
+            return [first, second, shown, f"equal up to rounding{self._rounding()}"]
         share = f" ({'-' if found.difference < 0 else '+'}{self.share})" if self.share and found.difference else ""
         return [first, second, f"{difference}{share}", "yes" if self.sign else self.word]
 

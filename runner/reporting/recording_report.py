@@ -17,7 +17,7 @@ from runner.reporting.markup import literal
 from runner.reporting.metric_titles import capital, title
 from runner.reporting.run_report import provenance
 from runner.reporting.table import Cell, Column, Number, numbers
-from runner.store.kinds import outputs_of
+from runner.store.kinds import outputs_of, report_place
 
 _MOST_POINTS = 600
 _RECORDED, _SIMULATED = 0, 1  # colours
@@ -49,7 +49,7 @@ def report_folder(found: RecordingComparison) -> Path:
     said = (found.run.hash, found.offset.start, recording.torque_shift, recording.filled, dict(recording.units))
     content = hashlib.sha256(f"recording {said!r} ".encode())
     content.update(_bytes_of(recording))
-    return outputs_of(found.run.folder) / "reports" / content.hexdigest()[:24]
+    return report_place(outputs_of(found.run.folder), content.hexdigest()[:24])
 
 
 def _abstract(found: RecordingComparison) -> str:

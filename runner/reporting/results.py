@@ -7,7 +7,7 @@ from datetime import datetime
 from pathlib import Path
 
 from runner.base import progress
-from runner.base.errors import RunnerError
+from runner.base.errors import RunnerError, StoreError
 from runner.base.sanitize import one_line
 from runner.reporting.figures import playback
 from runner.reporting.metric_titles import key_metrics
@@ -21,7 +21,7 @@ from runner.store import Calibration, Run, Sweep, open_stored
 from runner.store.atomic import write_atomically
 from runner.store.kinds import KINDS
 from runner.store.listing import Entry, list_entries, runs_of_sweeps
-from runner.store.seal import DamagedError
+from runner.store.seal import SchemaError
 from runner.sweeps.measurements import measure_sweep
 from runner.sweeps.status import find_status
 from runner.sweeps.tuning.study import open_tuning
@@ -29,6 +29,8 @@ from runner.sweeps.tuning.study import open_tuning
 _MOST_CELLS = 1000  # of a sweep whose answer is computed
 _MOST_THUMBNAILS = 60
 _LONGEST = 100
+# Errors of a file whose digest is right and whose content is not, as an edited or forged one has.
+_MISFITS = (ArithmeticError, AttributeError, LookupError, TypeError, ValueError)
 _UNITS = ("B", "kB", "MB", "GB", "TB")
 
 
@@ -43,7 +45,7 @@ class Row:
         runs: Number of runs times repetitions, such as "6 x 8".
         caveats: Number of runs with caveats.
         failed: Number of failed runs.
-        state: "good", "unfinished" or "damaged".
+        state: "good", "unfinished", "other version" or "damaged".
     """
 
     entry: Entry
@@ -118,8 +120,13 @@ def _row(entry: Entry, sizes: Mapping[str, int]) -> Row:
         if isinstance(found, Calibration):
             return Row(entry, str(found.provenance["command"]), ", ".join(found.record["estimates"]), "1")
         return _run_row(entry, found)
-    except DamagedError as error:
+    except SchemaError as error:
+        return Row(entry, "", one_line(str(error)), state="other version")
+    except StoreError as error:
         return Row(entry, "", one_line(str(error)), state="damaged")
+    except _MISFITS as error:
+        text = f"its content does not fit together: {type(error).__name__}: {error}"
+        return Row(entry, "", one_line(text), state="damaged")
 
 
 def _run_row(entry: Entry, run: Run) -> Row:

@@ -10,9 +10,11 @@ import yaml
 
 from runner.base.dotted_keys import dotted, leaves
 from runner.base.errors import ConfigError, RunnerError
+from runner.base.machine import read_machine
 from runner.base.quantities import above_rounding, number, quantity, with_powers
 from runner.config.compose.compose import compose
 from runner.metrics.caveats.versions import changes_since
+from runner.metrics.rounding import SENSITIVE, STEP
 from runner.reporting.document import Block, Code, Cover, Document, Notice, Provenance, Section, Table, Text
 from runner.reporting.figures import cover, desired_motion, last_moments, playback, torque_and_error
 from runner.reporting.markup import literal
@@ -20,7 +22,7 @@ from runner.reporting.metric_titles import capital, key_metrics, title
 from runner.reporting.plant_step import describe_plant, percent
 from runner.reporting.spec_blocks import spec_abstract, spec_blocks
 from runner.reporting.table import Column, numbers
-from runner.reporting.words import PLANT, in_words
+from runner.reporting.words import PLANT, in_words, join_values
 from runner.store import Run
 from runner.store.baselines import check_run, find_shipped
 
@@ -129,7 +131,17 @@ def run_blocks(run: Run) -> list[Block]:
     blocks += spec_blocks(run)
     if run.metrics:
         blocks.append(_metrics(run))
-    return [*blocks, Text(describe_plant(run))]
+    return [*blocks, Text(" ".join(filter(None, [describe_plant(run), _describe_rounding(run)])))]
+
+
+def _describe_rounding(run: Run) -> str:
+    """Return the number of metrics that are sensitive to rounding, as a sentence; empty if it is not known."""
+    changes = (run.rounding or {}).get("metrics", {}).values()
+    if not changes:
+        return ""
+    count = sum(change > SENSITIVE for change in changes)
+    start = f"From a start moved by {number(STEP, 2)} rad or m, repetition 0 gives"
+    return f"{start} {f'other values of {count} of {len(changes)} metrics' if count else 'the same metrics'}."
 
 
 def caveat_notices(run: Run) -> list[Block]:
@@ -148,16 +160,18 @@ def caveat_notices(run: Run) -> list[Block]:
 def _metrics(run: Run) -> Table:
     many = all(metric.quantiles for metric in run.metrics.values())
     levels, worth = _LEVELS if many else {}, (run.plant_error or {}).get("metrics", {})
+    changes = {name: one for name, one in (run.rounding or {}).get("metrics", {}).items() if one > SENSITIVE}
     rows = []
     for name, m in run.metrics.items():
         found = [m.median, m.min, *(m.quantiles[level] for level in levels), m.max]
         share = worth.get(name, {}).get("share")
         step = ["not comparable" if share is None else percent(share)] if worth else []
-        rows.append([title(name), name, *(above_rounding(value, m.unit) for value in found), *step])
+        rounded = [percent(changes[name]) if name in changes else "–"] if changes else []
+        rows.append([title(name), name, *(above_rounding(value, m.unit) for value in found), *step, *rounded])
     count = run.record["repetitions"]
     told = "; levels are quantiles, a repetition without a value counting as beyond every number" if many else ""
-    of_step = ["the plant's step"] if worth else []
-    names = numbers("median", "smallest", *levels.values(), "largest", *of_step)
+    of_step, of_rounding = ["the plant's step"] if worth else [], ["rounding"] if changes else []
+    names = numbers("median", "smallest", *levels.values(), "largest", *of_step, *of_rounding)
     return Table(
         "Metrics of one repetition." if count == 1 else f"Metrics over {count} repetitions{told}.",
         ["metric", Column("name on the command line", "code"), *names],
@@ -189,14 +203,14 @@ def provenance(runs: Sequence[Run]) -> Provenance:
     record = [run.provenance for run in runs]
 
     def join(values: Sequence[Any]) -> str:
-        return ", ".join(dict.fromkeys(str(value) for value in values))
+        return join_values(list(dict.fromkeys(str(value) for value in values)))
 
     versions = (f"{name} {join([r['versions'][name] for r in record])}" for name in record[0]["versions"])
     rows = [
         ("plant", _plants(runs)),
         ("commit", join([r["commit"] or "none (installed package)" for r in record])),
         ("seed", _seeds({int(r["seed"]) for r in record})),
-        ("machine", join([r["machine"] for r in record])),
+        ("machine", join([read_machine(r["machine"]).text for r in record])),
         ("software", ", ".join(versions)),
         ("made on", join(sorted(str(r["date"]) for r in record))),
     ]

@@ -11,7 +11,7 @@ from runner.base.errors import RunnerError
 from runner.reporting import render
 from runner.reporting.comparison.sweeps import letter
 from runner.reporting.document import Document
-from runner.store.kinds import kind_of, note, outputs_of
+from runner.store.kinds import kind_of, note, outputs_of, report_place
 from runner.sweeps.measurements import measure_stored
 
 
@@ -51,8 +51,7 @@ def compose_report(
     things = [store.open_stored(folder) for folder in folders if folder not in tunings]
     sweeps = [thing for thing in things if isinstance(thing, store.Sweep)]
     runs = [thing for thing in things if isinstance(thing, store.Run)]
-    reports = outputs_of(folders[0]) / "reports"
-    place = output or reports / "any"
+    place = output or report_place(outputs_of(folders[0]), report_name(folders, metrics))
     if len(folders) > 1 and len(folders) not in (len(sweeps), len(runs)):
         raise RunnerError("these results have no common report. Allowed: only runs, only sweeps, or one folder.")
     if metrics and not sweeps:
@@ -78,7 +77,7 @@ def compose_report(
 
         sides = [measure_stored(sweep, letter(place)) for place, sweep in enumerate(sweeps)]
         document = comparison_document(sides, metrics)
-    return document, output or reports / report_name(folders, metrics)
+    return document, place
 
 
 def report_name(folders: Sequence[Path], metrics: Sequence[str] = ()) -> str:

@@ -169,7 +169,7 @@ def _is_flat(shape: ET.Element) -> bool:
 
 
 def _check_joints(path: Path, tree: UrdfTree) -> list[str]:
-    """Return messages about coupled joints and branches, because each file must describe one serial arm."""
+    """Return messages about branches, coupled joints and their types: each file must describe one serial arm."""
     chain = tree.chain
     beside = sorted(name for name, joint in tree.joints.items() if moves(joint) and name not in chain)
     held = "`runner doctor FILE --tip FRAME --output DIR` holds fixed what does not move the tip"
@@ -178,10 +178,17 @@ def _check_joints(path: Path, tree: UrdfTree) -> list[str]:
             f"robot.urdf: {path} branches: {', '.join(beside)} move beside {', '.join(sorted(chain))}; allowed: a "
             f"serial arm; {held}"
         ]
-    return [
+    tied = [
         f"robot.urdf: joint '{name}' in {path} {tree.ties[name]}, and its motion would be free; take that out; {held}"
         for name in chain
         if name in tree.ties
+    ]
+    kinds = {name: tree.joints[name].get("type", "") for name in chain}
+    allowed = "allowed: revolute or prismatic; `runner doctor FILE --output DIR` makes a continuous joint revolute"
+    return tied + [
+        f"robot.urdf: joint '{name}' in {path} is {kind or 'of no type'}; {allowed}"
+        for name, kind in kinds.items()
+        if kind not in ("revolute", "prismatic")
     ]
 
 

@@ -8,7 +8,8 @@ import numpy as np
 
 from runner.base.arrays import FloatArray
 from runner.base.errors import ConfigError
-from runner.base.lazy_modules import lapack, pin
+from runner.base.lazy_modules import pin
+from runner.base.portable import dot, solve_symmetric
 from runner.robots.model import RobotModel
 from runner.robots.task_space import task_basis
 
@@ -211,16 +212,13 @@ def _newton(task: Task, q: FloatArray, limits: FloatArray) -> FloatArray:
     lower, upper = limits
     for _ in range(_MAX_NEWTON):
         error, J = task(q)
-        left = float(error.dot(error))
+        left = float(dot(error, error))
         if math.sqrt(left) < TOLERANCE:
             break
         # The damping vanishes with the error: fast convergence, and no large steps near a singular configuration.
         square, added = J.dot(J.T), 1e-3 * left
         square.flat[:: len(error) + 1] += added
-        _, _, solution, singular = lapack.dgesv(square, error)
-        if singular:
-            raise np.linalg.LinAlgError("the tip's Jacobian is singular")
-        step = J.T.dot(solution)
+        step = dot(J.T, solve_symmetric(square, error, "the tip's Jacobian is singular"))
         moved = q + step
         if np.minimum(moved - lower, upper - moved).min() >= 0.0:
             q = moved
@@ -231,8 +229,8 @@ def _newton(task: Task, q: FloatArray, limits: FloatArray) -> FloatArray:
             blocked |= outside  # these joints stop at their limits, and only the others move
             held = np.clip(q + step, lower, upper) - q
             free = np.where(blocked, 0.0, J)
-            rest = error - J @ np.where(blocked, held, 0.0)
-            step = np.where(blocked, held, free.T @ np.linalg.lstsq(free @ free.T + damping, rest, rcond=None)[0])
+            rest = error - dot(J, np.where(blocked, held, 0.0))
+            step = np.where(blocked, held, dot(free.T, solve_symmetric(free @ free.T + damping, rest)))
         q = q + step
     return q
 

@@ -159,6 +159,7 @@ MISMATCHES = Registry[KindConfig, [Robot, np.random.Generator], Robot](
 """`build` takes the simulated robot and a random generator, and returns the nominal robot."""
 
 
+COMPILED = True
 CONFIG = MismatchConfig
 
 

@@ -302,9 +302,9 @@ def _check_joints(model: "pin.Model", names: Sequence[str]) -> None:
     if not 1 <= len(names) <= _MOST_JOINTS:
         problems.append(f"robot.urdf: {len(names) or 'no'} joints that move; allowed: 1 to {_MOST_JOINTS}")
     for name, joint in zip(names, list(model.joints)[1:], strict=True):
-        kind = joint.shortname()
-        if joint.nq != 1 or not kind.startswith(("JointModelR", "JointModelP")):
-            problems.append(f"robot.urdf: joint '{name}' is {kind}; allowed: revolute (with wide limits) or prismatic")
+        if joint.nq != 1 or not joint.shortname().startswith(("JointModelR", "JointModelP")):
+            allowed = "revolute (with wide limits) or prismatic"
+            problems.append(f"robot.urdf: joint '{name}' has another type; allowed: {allowed}")
     if problems:
         raise ConfigError(problems)
 

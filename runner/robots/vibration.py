@@ -8,6 +8,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from runner.base import portable
 from runner.base.arrays import FloatArray
 from runner.base.lazy_modules import pin
 from runner.robots.model import RobotModel
@@ -38,7 +39,7 @@ class Mode(NamedTuple):
         on, omega = times >= after - 1e-9, 2.0 * np.pi * self.frequency
         since = times[on] - after
         phase = omega * np.sqrt(1.0 - self.damping_ratio**2) * since
-        fall = np.exp(-self.damping_ratio * omega * since)
+        fall = portable.exp(-self.damping_ratio * omega * since)
         waves = np.stack([fall * np.cos(phase), fall * np.sin(phase), np.ones_like(since)], axis=1)
         return float(np.hypot(*np.linalg.lstsq(waves, signal[on], rcond=None)[0][:2]))
 

@@ -5,6 +5,7 @@ from collections.abc import Iterator, Sequence
 from typing import get_args
 
 from pydantic import BaseModel, ConfigDict
+from pydantic.fields import FieldInfo
 
 from runner.base.sanitize import quoted
 from runner.schema.units import Unit
@@ -16,8 +17,8 @@ class StrictModel(BaseModel):
     model_config = ConfigDict(extra="forbid", strict=True, allow_inf_nan=False, frozen=True)
 
     @classmethod
-    def find_unit(cls, path: Sequence[str]) -> Unit | None:
-        """Return the unit of a key below this model; None if there is no such key.
+    def find_field(cls, path: Sequence[str]) -> FieldInfo | None:
+        """Return the field of a key below this model; None if there is no such key.
 
         Args:
             path: Keys that lead to the key, such as ["stages", "macro", "home"]; the method ignores keys and indices
@@ -28,9 +29,13 @@ class StrictModel(BaseModel):
             return None
         field = cls.model_fields[name]
         inner, of_one = nested_model(field.annotation), rest[1:] if rest and rest[0].isdecimal() else rest
-        if inner is not None and of_one:
-            return inner.find_unit(of_one)
-        return next((each for each in field.metadata if isinstance(each, Unit)), Unit())
+        return inner.find_field(of_one) if inner is not None and of_one else field
+
+    @classmethod
+    def find_unit(cls, path: Sequence[str]) -> Unit | None:
+        """Return the unit of a key below this model; None for an unknown key. See find_field."""
+        field = cls.find_field(path)
+        return None if field is None else next((each for each in field.metadata if isinstance(each, Unit)), Unit())
 
 
 def nested_model(annotation: object) -> type[StrictModel] | None:

@@ -1,11 +1,14 @@
 """Sensors: encoders, joint torques, wrist force/torque and tip position."""
 
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass
 from typing import Any, Protocol
 
 import numpy as np
 
 from runner.base.arrays import FloatArray
 from runner.base.errors import SimulationError
+from runner.plugins.features import Features, read_features
 from runner.plugins.guard import Asked, Guard, Method, checked, like, place
 from runner.plugins.registry import KindConfig, Registry
 
@@ -49,6 +52,19 @@ def _check_measurement(
     return checked(answer[0], q.shape, asked), checked(answer[1], dq.shape, asked)
 
 
+@dataclass(frozen=True)
+class SensorFeatures(Features):
+    """Optional members of the module of a sensor in the joints.
+
+    Attributes:
+        by_joint: Function of the config and of the unit of each joint by name, by stage. It returns the values of each
+            joint, with the kind, from which `build` makes the sensors, or None for no sensors. The default returns the
+            config.
+    """
+
+    by_joint: Callable[[Any, Mapping[str, Mapping[str, str]]], Any] = lambda config, units: config
+
+
 NOISES = Registry[KindConfig, [tuple[str, ...], int, float, np.random.Generator], Encoders](
     "noise",
     {"encoders": "runner.sensing.encoders"},
@@ -72,3 +88,20 @@ JOINT_TORQUE_SENSORS = Registry[KindConfig, [tuple[str, ...], int, np.random.Gen
     default="joint_torque",
 )
 """`build` takes the joint names, the number of readings, and a random generator."""
+
+
+def values_by_joint(group: str, sensor: KindConfig, units: Mapping[str, Mapping[str, str]]) -> KindConfig | None:
+    """Return the values of each joint's sensor, None without sensors; see SensorFeatures.
+
+    Args:
+        group: "noise" or "joint_torque_sensor".
+        sensor: Config of the sensors.
+        units: Unit of the position of each joint by name, rad or m, by stage.
+
+    Raises:
+        ConfigError: for values that do not fit the robot.
+    """
+    kinds: Registry[KindConfig, ..., Any] = NOISES if group == NOISES.group else JOINT_TORQUE_SENSORS
+    features: SensorFeatures = read_features(SensorFeatures, kinds.module(sensor.kind))
+    found: KindConfig | None = kinds.ask(sensor, features.by_joint, units)
+    return found

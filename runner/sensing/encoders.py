@@ -3,7 +3,7 @@
 import math
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
-from typing import ClassVar, Literal
+from typing import Literal
 
 import numpy as np
 from pydantic import PositiveFloat
@@ -22,7 +22,6 @@ class EncoderNoise:
     """Noise, bias and resolution of joint encoders.
 
     Attributes:
-        kind: Name in the registry.
         position: Half-width (uniform) or standard deviation (gaussian) of the position noise of each joint,
             shape (nq,), in rad.
         bias: Constant error of the measured position of each joint, as from a wrong zero, shape (nq,), in rad.
@@ -30,15 +29,16 @@ class EncoderNoise:
         distribution: Distribution of the position noise.
         velocity: Source of the velocities: exact, or an estimate from the positions measured at the ticks of the loop.
         velocity_bandwidth: Bandwidth of the velocity estimate, in rad/s, if it has one.
+        kind: Name in the registry.
     """
 
-    kind: ClassVar[str] = "encoders"
     position: FloatArray
     bias: FloatArray
     resolution: FloatArray
     distribution: Literal["uniform", "gaussian", "none"]
     velocity: Velocity
     velocity_bandwidth: float = DEFAULT_BANDWIDTH
+    kind: str = "encoders"
 
     def round(self, positions: FloatArray) -> None:
         """Round positions, shape (..., nq), to the resolution in place."""
@@ -95,7 +95,8 @@ class NoiseConfig(StrictModel):
         if problems:
             raise ConfigError(problems)
         position, bias, resolution = found
-        return EncoderNoise(position, bias, resolution, self.distribution, self.velocity, self.velocity_bandwidth)
+        ways = self.distribution, self.velocity, self.velocity_bandwidth
+        return EncoderNoise(position, bias, resolution, *ways, self.kind)
 
 
 def _by_joint(key: str, value: float | Mapping[str, float], units: Mapping[str, Mapping[str, str]]) -> FloatArray:
@@ -110,12 +111,6 @@ def _by_joint(key: str, value: float | Mapping[str, float], units: Mapping[str, 
     if problems:
         raise ConfigError(problems)
     return np.repeat(values, [len(joints) for joints in units.values()])
-
-
-def exact_encoders(joints: int) -> EncoderNoise:
-    """Return zero noise for a number of joints."""
-    zero = np.zeros(joints)
-    return EncoderNoise(zero, zero, zero, "none", "exact")
 
 
 class JointEncoders:
@@ -155,7 +150,9 @@ class JointEncoders:
         return measured, velocity
 
 
+COMPILED = True
 CONFIG = NoiseConfig
+by_joint = NoiseConfig.by_joint
 
 
 def build(

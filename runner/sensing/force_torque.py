@@ -1,5 +1,6 @@
 """Six-axis force/torque sensor between flange and tool."""
 
+import math
 from typing import Annotated, Literal
 
 import numpy as np
@@ -8,7 +9,7 @@ from pydantic import Field, NonNegativeFloat, PositiveFloat
 from runner.base.arrays import FloatArray
 from runner.schema.model import StrictModel
 from runner.schema.units import AxisWrench, Hertz, Kilograms, Metres, Radians
-from runner.sensing.wrench import wrench_transform
+from runner.sensing.wrench import inverse_wrench_transform
 
 AXES = ("Fx", "Fy", "Fz", "Mx", "My", "Mz")
 UNITS = ("N", "N", "N", "N m", "N m", "N m")
@@ -94,9 +95,9 @@ class ForceTorqueSensor:
         steps = np.array(config.drift) * np.sqrt(period) * draws[:, 1]
         steps[:1] = 0.0
         self._bias = np.array(config.bias) + np.cumsum(steps, axis=0)
-        self._transform = np.linalg.inv(wrench_transform(config.pose))
+        self._transform = inverse_wrench_transform(config.pose)
         # Exact for a load that is constant between ticks.
-        self._share = 1.0 if config.low_pass is None else -np.expm1(-2.0 * np.pi * config.low_pass * period)
+        self._share = 1.0 if config.low_pass is None else -math.expm1(-2.0 * math.pi * config.low_pass * period)
         self._seen: FloatArray | None = None
         self._range = np.array(config.range)
         resolution = np.array(config.resolution)

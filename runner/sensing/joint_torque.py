@@ -2,7 +2,7 @@
 
 from collections.abc import Mapping
 from dataclasses import dataclass
-from typing import ClassVar, Literal
+from typing import Literal
 
 import numpy as np
 from pydantic import FiniteFloat, NonNegativeFloat
@@ -42,7 +42,7 @@ class JointTorqueConfig(StrictModel):
         joints = [name for stage in units.values() for name in stage]
         noise = expand("joint_torque_sensor.noise", self.noise, joints)
         bias = expand("joint_torque_sensor.bias", self.bias, joints)
-        return JointTorqueNoise(np.array(noise), np.array(bias))
+        return JointTorqueNoise(np.array(noise), np.array(bias), self.kind)
 
 
 @dataclass(frozen=True)
@@ -50,14 +50,14 @@ class JointTorqueNoise:
     """Errors of joint torque sensors.
 
     Attributes:
-        kind: Name in the registry.
         noise: Standard deviation of the reading of each joint, shape (nq,), in N m.
         bias: Constant error of each joint, shape (nq,), in N m.
+        kind: Name in the registry.
     """
 
-    kind: ClassVar[str] = "joint_torque"
     noise: FloatArray
     bias: FloatArray
+    kind: str = "joint_torque"
 
 
 class JointTorqueSensor:
@@ -81,6 +81,7 @@ class JointTorqueSensor:
 
 
 CONFIG = JointTorqueConfig
+by_joint = JointTorqueConfig.by_joint
 
 
 def build(

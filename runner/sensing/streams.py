@@ -12,7 +12,8 @@ from numpy.typing import NDArray
 
 Words = NDArray[np.uint32]
 
-MISMATCH, JOINT_TORQUES, TIP, COMPUTATION, ENVIRONMENT = 2**32 - 1, 2**32 - 2, 2**32 - 3, 2**32 - 4, 2**32 - 5
+MISMATCH, JOINT_TORQUES, TIP, COMPUTATION = 2**32 - 1, 2**32 - 2, 2**32 - 3, 2**32 - 4
+ENVIRONMENT, ROUNDING = 2**32 - 5, 2**32 - 6
 """Values of `place` for these random streams; control loops and the wrist sensor have the values from 0."""
 
 _POOL = 4  # words of 32 bits

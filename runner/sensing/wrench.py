@@ -5,6 +5,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from runner.base import portable
 from runner.base.arrays import FloatArray
 
 
@@ -41,3 +42,11 @@ def wrench_transform(pose: FloatArray) -> FloatArray:
     transform[:3, :3] = transform[3:, 3:] = R
     transform[3:, :3] = cross_matrix(p) @ R
     return transform
+
+
+def inverse_wrench_transform(pose: FloatArray) -> FloatArray:
+    """Return the matrix that transforms wrenches from S2 to S1, shape (6, 6); see wrench_transform."""
+    back = np.eye(4)
+    back[:3, :3] = pose[:3, :3].T
+    back[:3, 3] = -portable.dot(back[:3, :3], pose[:3, 3])
+    return wrench_transform(back)

@@ -48,11 +48,12 @@ def assemble(config: RunConfig, repetition: int = 0) -> ClosedLoop:
     nominal, loops = _build_nominal(config, repetition)
     environment = ENVIRONMENTS.build(config.environment)
     with ExitStack() as on_error:
-        touched = environment if isinstance(environment, Wall) and touches_by_tip(config) else None
+        wall = environment if type(environment) is Wall else None  # the plants know no other environment
+        touched = wall if wall is not None and touches_by_tip(config) else None
         plant = _make_plant(config, nominal, loops[0].period, touched)
         on_error.callback(plant.close)
-        if isinstance(environment, Wall):
-            environment = None if touched else add_wall(environment, config, plant)
+        if wall is not None:
+            environment = None if touched else add_wall(wall, config, plant)
         interaction = Interaction(arm, environment, timing.tick) if config.has_contact else None
         code = compiled(_find_commands(config, loops))
         on_error.pop_all()
@@ -154,7 +155,7 @@ def build_loops(config: RunConfig, nominal: Robot) -> tuple[Loop, ...]:
 
 def _find_commands(config: RunConfig, loops: tuple[Loop, ...]) -> Commands | None:
     """Return the control loops for compilation; None if they cannot be compiled."""
-    fits = config.commands == "torque" and config.compilable and not is_flexible(config)
+    fits = config.commands == "torque" and not config.endpoint_sensor.read_by and not is_flexible(config)
     return find_commands(config, loops) if fits else None
 
 

@@ -17,6 +17,7 @@ from runner.base.arrays import FloatArray
 from runner.base.cache import Memory
 from runner.base.ticks import add_ticks
 from runner.base.trace import Failure, Trace
+from runner.config.parsing import require
 from runner.config.run import RunConfig
 from runner.metrics.caveats.monitor import Watch, look_together
 from runner.metrics.caveats.setting import setting_of, signals_of
@@ -273,7 +274,7 @@ def draw_errors(runs: Sequence[RunSpec], rows: int) -> list[FloatArray]:
     """
     return [
         encoder_errors(
-            [run.config.encoder_noise for run in runs],
+            [require(run.config.encoder_noise) for run in runs],
             [(run.config.settings.seed, run.repetition, number) for run in runs],
             (rows - 1) // loop.every + 1,
         )

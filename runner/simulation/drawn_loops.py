@@ -15,8 +15,9 @@ from runner.simulation.compiled.loops import DrawnRow
 
 
 def draws_together(config: RunConfig) -> bool:
-    """Return True if nominal models of several repetitions are drawn as arrays: built-in mismatch and built-in laws."""
-    return config.model_error.varies and CONTROLLERS.is_ours(config.controller.kind)
+    """Return True if the nominal models of several repetitions are drawn as arrays, for laws that take such models."""
+    error = config.model_error
+    return error is not None and error.varies and CONTROLLERS.features(config.controller.kind).TAKES_DRAWN
 
 
 def draw_commands(config: RunConfig, repetitions: Sequence[int]) -> Commands:
@@ -27,7 +28,8 @@ def draw_commands(config: RunConfig, repetitions: Sequence[int]) -> Commands:
         repetitions: Numbers of the repetitions.
     """
     streams = generators([(config.settings.seed, repetition, MISMATCH) for repetition in repetitions])
-    return require(find_commands(config, build_loops(config, build_drawn(config.model_error, config.arm, streams))))
+    nominal = build_drawn(require(config.model_error), config.arm, streams)
+    return require(find_commands(config, build_loops(config, nominal)))
 
 
 def with_drawn(closed: ClosedLoop, config: RunConfig, repetitions: Sequence[int]) -> list[ClosedLoop] | None:

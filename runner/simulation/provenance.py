@@ -10,7 +10,9 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from runner.base.engines import STAND_IN, installed_versions
+from runner.base.machine import this_machine
 from runner.base.paths import package_dir
+from runner.config.dependent_keys import idle_keys
 from runner.plugins import discovery
 from runner.statistics.spec import today
 from runner.symbolic.engine import evaluator
@@ -35,7 +37,7 @@ def describe_origin(composed: "Composed", *subcommand: str) -> dict[str, Any]:
         "plugins": discovery.digests(),
         "commit": commit(),
         "versions": versions(),
-        "machine": machine(),
+        "machine": this_machine().record(),
     }
 
 
@@ -50,7 +52,7 @@ def job_provenance(config: "RunConfig", notices: Sequence[str] = ()) -> dict[str
         "stages": {stage.name: stage.base_frame for stage in config.arm.stages},
         "joints": list(config.arm.model.joint_names),
         "seed": config.settings.seed,
-        "warnings": [*config.warnings, *notices],
+        "warnings": [*config.warnings, *idle_keys(config), *notices],
     }
 
 
@@ -86,37 +88,35 @@ _quoted = lru_cache(4096)(shlex.quote)
 
 @cache
 def commit() -> str | None:
-    """Return the checkout's commit, with "+changes" when files differ from it; None outside a checkout."""
-    folder = package_dir().parent
+    """Return the checkout's commit, with "+changes" when files differ from it.
+
+    Returns:
+        None without a checkout of this package. Another repository that contains an installed copy, or that variables
+        such as GIT_DIR name, says nothing about the package.
+    """
+    package = package_dir()
     try:
-        head = subprocess.run(
-            ["git", "-C", str(folder), "rev-parse", "HEAD"], capture_output=True, text=True, check=True, timeout=10
-        ).stdout.strip()
-        changes = subprocess.run(
-            ["git", "-C", str(folder), "status", "--porcelain", "--untracked-files=no"],
-            capture_output=True,
-            text=True,
-            check=True,
-            timeout=10,
-        ).stdout.strip()
+        of_package = f"{package.name}/__init__.py"
+        if _git(package, "ls-files", "--full-name", "__init__.py") != of_package:
+            return None
+        head, changes = _git(package, "rev-parse", "HEAD"), _git(package, "status", "--porcelain", "-uno")
     except (OSError, subprocess.SubprocessError):
         return None
     return head + ("+changes" if changes else "")
+
+
+def _git(folder: Path, *words: str) -> str:
+    return subprocess.run(
+        ["git", "-C", str(folder), *words],
+        env={name: value for name, value in os.environ.items() if not name.startswith("GIT_")},
+        capture_output=True,
+        text=True,
+        check=True,
+        timeout=10,
+    ).stdout.strip()
 
 
 @cache
 def versions() -> dict[str, str]:
     """Return the versions of Python and of the libraries that results depend on."""
     return {"python": platform.python_version(), **installed_versions(_LIBRARIES), **evaluator()}
-
-
-@cache
-def machine() -> str:
-    """Return the kind of machine: processor and system, no names."""
-    processor = platform.machine()
-    try:
-        lines = Path("/proc/cpuinfo").read_text().splitlines()
-        processor = next((line.partition(":")[2].strip() for line in lines if line.startswith("model name")), processor)
-    except OSError:
-        pass
-    return f"{processor}, {platform.system()} {platform.machine()}"

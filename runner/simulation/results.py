@@ -1,5 +1,6 @@
 """Results of a run, collected as its repetitions end."""
 
+import math
 import os
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, replace
@@ -18,6 +19,7 @@ from runner.metrics.caveats.rule import Found
 from runner.metrics.caveats.setting import signals_of
 from runner.metrics.family import MetricContext
 from runner.metrics.plant_error import PlantError
+from runner.metrics.rounding import RoundingGrowth
 from runner.metrics.summary import Summary, evaluate, summarize_arrays
 from runner.simulation.provenance import job_provenance
 
@@ -37,6 +39,7 @@ class RunResult:
         timing: Measured times.
         provenance: Commit, versions, machine, seed, command.
         plant_error: Integration error; None if it was not asked for or cannot be measured.
+        rounding: Growth of rounding errors; None if it was not asked for.
     """
 
     config: RunConfig
@@ -47,6 +50,7 @@ class RunResult:
     timing: Mapping[str, float | None]
     provenance: Mapping[str, Any]
     plant_error: PlantError | None = None
+    rounding: RoundingGrowth | None = None
 
 
 @dataclass(eq=False)
@@ -87,12 +91,7 @@ class Collector:
 
     def evaluate(self, repetition: int, trace: Trace, context: MetricContext) -> bool:
         """Measure and add a repetition; return True if all have ended."""
-        metrics: dict[str, float | None] = {}
-        try:
-            metrics = evaluate(trace, context, self.notices)
-        except SimulationError as error:  # from a plug-in
-            trace = replace(trace, failure=Failure(error.reason, float(trace.t[-1])))
-        return self.add(repetition, trace, metrics)
+        return self.add(repetition, *measure_repetition(trace, context, self.notices))
 
     def add(self, repetition: int, trace: Trace, metrics: Mapping[str, float | None]) -> bool:
         """Add a repetition that was simulated separately; return True if all have ended."""
@@ -170,13 +169,25 @@ class Collector:
         laws = np.concatenate(self.law_seconds) if self.law_seconds else None
         return timing(np.concatenate(self.tick_seconds), self.seconds, self.seconds, laws)
 
+    def of_first(self) -> dict[str, float | None]:
+        """Return the metrics of the first repetition; none if it failed."""
+        if self.trace is None or self.trace.failure is not None:
+            return {}
+        pairs = zip(self.names, self.values[0].tolist(), strict=True)
+        return {name: None if math.isnan(value) else value for name, value in pairs}
+
     def result(
-        self, error: PlantError | None = None, warnings: Sequence[str] = (), clock: Mapping[str, float] | None = None
+        self,
+        error: PlantError | None = None,
+        growth: RoundingGrowth | None = None,
+        warnings: Sequence[str] = (),
+        clock: Mapping[str, float] | None = None,
     ) -> RunResult:
         """Return the result of the complete run.
 
         Args:
             error: Integration error of the run.
+            growth: Growth of rounding errors in the run.
             warnings: Warnings during its simulation, before those of its metrics.
             clock: Measured wall-clock and CPU time, in s; None for the time of its repetitions.
         """
@@ -187,12 +198,29 @@ class Collector:
             config=config,
             trace=self.trace,
             metrics=summarize_arrays(self.names, self.values),
-            caveats=self.caveats if error is None else self.watch.found(error, step),
+            caveats=self.caveats if error is None and growth is None else self.watch.found(error, step, growth),
             failure=self.failure,
             timing={**self.timing, **(clock or {})},
             provenance=job_provenance(config, [*warnings, *dict.fromkeys(self.notices)]),
             plant_error=error,
+            rounding=growth,
         )
+
+
+def measure_repetition(
+    trace: Trace, context: MetricContext, notices: list[str]
+) -> tuple[Trace, Mapping[str, float | None]]:
+    """Return a trace and its metrics; none if it failed, or if a plug-in fails, which fails the trace at its end.
+
+    Args:
+        trace: Trace of a repetition.
+        context: Context of the metrics.
+        notices: List that receives a message for each fault in user-supplied metrics.
+    """
+    try:
+        return trace, evaluate(trace, context, notices)
+    except SimulationError as error:
+        return replace(trace, failure=Failure(error.reason, float(trace.t[-1]))), {}
 
 
 def timing(

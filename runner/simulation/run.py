@@ -8,30 +8,34 @@ lock, so threads use several cores. Results do not depend on the blocks or the n
 import os
 import time
 from collections import deque
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from concurrent.futures import Future, ThreadPoolExecutor
 from dataclasses import replace
 from functools import partial
 
 import numpy as np
 
+from runner.base.arrays import FloatArray
 from runner.base.errors import ConfigError
 from runner.base.trace import Trace
 from runner.config.limits import TICKS_AT_ONCE
+from runner.config.parsing import require
 from runner.config.run import RunConfig
 from runner.config.validation import validate
+from runner.metrics import rounding
 from runner.metrics.caveats.monitor import Watch
 from runner.metrics.caveats.setting import setting_of
 from runner.metrics.plant_error import COMPARED, PlantError, compare, on_runge_kutta, reason_not_comparable
+from runner.metrics.rounding import RoundingGrowth, move_start
 from runner.plugins.discovery import has_users_parts
 from runner.sensing.force_torque import ForceTorqueSensor
-from runner.sensing.streams import ENVIRONMENT
+from runner.sensing.streams import ENVIRONMENT, ROUNDING
 from runner.simulation.assembly import assemble, metric_context
 from runner.simulation.batch import BatchResult, BatchSimulator, simulate_together
 from runner.simulation.closed_loop import ClosedLoop
 from runner.simulation.drawn_loops import with_drawn
 from runner.simulation.loop import simulate
-from runner.simulation.results import Collector, RunResult
+from runner.simulation.results import Collector, RunResult, measure_repetition
 from runner.simulation.sensors import make_sensors
 
 MOST_THREADS = 4
@@ -57,8 +61,17 @@ def simulate_run(config: RunConfig, threads: int = 1) -> RunResult:
     return simulate_blocks(config, threads) or _simulate_one_by_one(config)
 
 
-def simulate_repetition(config: RunConfig, repetition: int = 0, ticks: int | None = None) -> Trace:
-    """Simulate one repetition, at most a number of its ticks.
+def simulate_repetition(
+    config: RunConfig, repetition: int = 0, ticks: int | None = None, signs: FloatArray | None = None
+) -> Trace:
+    """Simulate one repetition.
+
+    Args:
+        config: The checked config.
+        repetition: Number of the repetition.
+        ticks: Largest number of ticks; None for all.
+        signs: Signs with which the joints start from moved positions, shape (nq,), see `move_start`; None for the start
+            of the run.
 
     Raises:
         ConfigError: see assemble.
@@ -67,12 +80,14 @@ def simulate_repetition(config: RunConfig, repetition: int = 0, ticks: int | Non
     batcher = BatchSimulator()
     runs = batcher.repetitions(config, range(repetition, repetition + 1))
     if runs is not None:
-        (found,) = batcher.simulate([runs[0].first(ticks)])
+        q_start = runs[0].q_start if signs is None else move_start(runs[0].q_start, signs)
+        (found,) = batcher.simulate([replace(runs[0], q_start=q_start).first(ticks)])
         return found.traces[0] if isinstance(found, BatchResult) else found[1]
     closed = assemble(config, repetition)
     try:
         (own,) = with_drawn(closed, config, [repetition]) or [closed]
-        return simulate_assembled(replace(own, ticks=ticks), config, repetition)[0]
+        q_start = own.q_start if signs is None else move_start(own.q_start, signs)
+        return simulate_assembled(replace(own, ticks=ticks, q_start=q_start), config, repetition)[0]
     finally:
         closed.close()
 
@@ -110,7 +125,15 @@ def _simulate_one_by_one(config: RunConfig) -> RunResult:
     finally:
         loop.close()
     clock = {"wall_s": time.perf_counter() - wall, "cpu_s": time.process_time() - cpu}
-    return collector.result(_plant_error(collector), warnings, clock)
+    return _compared(collector, warnings, clock)
+
+
+def _compared(collector: Collector, warnings: Sequence[str], clock: Mapping[str, float]) -> RunResult:
+    """Return the result of a complete run, with its integration error and growth of rounding errors if asked for."""
+    config, growth = collector.config, None
+    if config.settings.plant_error:
+        growth = measure_rounding(config, (require(collector.trace), collector.of_first()))
+    return collector.result(_plant_error(collector), growth, warnings, clock)
 
 
 def _plant_error(collector: Collector) -> PlantError | None:
@@ -125,10 +148,27 @@ def _plant_error(collector: Collector) -> PlantError | None:
         made = simulate_run(other)
     except ConfigError as error:
         return PlantError(None, str(error))
-    measured = {} if trace.failure else dict(zip(collector.names, collector.values[0].tolist(), strict=True))
-    ours = {name: None if np.isnan(value) else value for name, value in measured.items()}
     theirs = {name: summary.median for name, summary in made.metrics.items()}
-    return compare(trace, ours, made.trace, theirs, config.robot.settling_band, other.timing.step)
+    return compare(trace, collector.of_first(), made.trace, theirs, config.robot.settling_band, other.timing.step)
+
+
+def measure_rounding(
+    config: RunConfig, own: tuple[Trace, Mapping[str, float | None]] | None = None, draw: int = 0
+) -> RoundingGrowth:
+    """Compare repetition 0 with the same repetition from a start moved by rounding errors.
+
+    Args:
+        config: The checked config.
+        own: Trace and metrics of repetition 0; None if they are to be simulated.
+        draw: Number of the draw of signs.
+
+    Raises:
+        ConfigError: see assemble.
+    """
+    context = metric_context(config)
+    signs = np.random.default_rng([config.settings.seed, draw, ROUNDING]).choice([-1.0, 1.0], config.arm.model.nq)
+    moved = measure_repetition(simulate_repetition(config, signs=signs), context, [])
+    return rounding.compare(*(own or measure_repetition(simulate_repetition(config), context, [])), *moved)
 
 
 def simulate_blocks(config: RunConfig, threads: int = 1, ticks: int = TICKS) -> RunResult | None:
@@ -156,7 +196,7 @@ def simulate_blocks(config: RunConfig, threads: int = 1, ticks: int = TICKS) -> 
             return None
         whole.join(run)
     clock = {"wall_s": time.perf_counter() - wall, "cpu_s": time.process_time() - cpu}
-    return whole.result(clock=clock)
+    return _compared(whole, (), clock)
 
 
 def _simulate_block(config: RunConfig, batcher: BatchSimulator, block: range) -> Collector | None:

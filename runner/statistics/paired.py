@@ -103,12 +103,14 @@ class Comparison:
         b: Values of the second, in the same order.
         differences: b - a; zero where both are beyond every number.
         error: Typical error of the plants in one difference; None where it is not known.
+        rounding: Largest change of a value through rounding, as a fraction; 0 where it is not known.
     """
 
     a: FloatArray = field(repr=False)
     b: FloatArray = field(repr=False)
     differences: FloatArray = field(repr=False)
     error: float | None = None
+    rounding: float = 0.0
 
     @property
     def n(self) -> int:

@@ -55,9 +55,28 @@ def open_atomically(path: Path, flush: bool = True) -> Iterator[BinaryIO]:
             temporary.unlink(missing_ok=True)
 
 
+def refuse_links(outputs: Path, path: Path) -> None:
+    """Check that no part of a path in an outputs folder is a link: one in a stranger's folder may lead anywhere.
+
+    Args:
+        outputs: The outputs folder, which may itself be reached by a link.
+        path: The file or folder that is written.
+
+    Raises:
+        StoreError: for a link.
+    """
+    for part in (path, *path.parents):
+        if part == outputs:
+            return
+        if part.is_symlink():
+            raise StoreError(
+                f"{part}: it is a link, through which nothing is written. Remove it, or take another folder"
+            )
+
+
 def remove_leftovers(folder: Path) -> None:
-    """Remove temporary files whose writing process is gone, and those older than a minute."""
-    for path in folder.glob(".*.tmp"):
+    """Remove temporary files whose writing process is gone, and those older than a minute; none through a link."""
+    for path in () if folder.is_symlink() else folder.glob(".*.tmp"):
         host, _, process = path.name.removesuffix(".tmp").rpartition(".")
         with contextlib.suppress(OSError):
             here = host.endswith(f".{socket.gethostname()}")

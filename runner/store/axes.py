@@ -4,6 +4,7 @@ import math
 import re
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
+from functools import cached_property
 from typing import Any
 
 import numpy as np
@@ -13,7 +14,7 @@ from runner.base.arrays import FloatArray
 from runner.base.dotted_keys import split_override
 from runner.base.errors import RunnerError, StoreError, unknown
 
-_PLAIN = re.compile(r"[\w./+-]+|\$\{[\w.]+\}")
+_PLAIN = re.compile(r"[\w./+-]+|\$\{[\w.]+\}", re.ASCII)
 _OTHER_KIND = re.compile(r"(?i)null|true|false|[+-]?(inf|nan|[\d._]+(e[+-]?[\d_]+)?)")
 _LISTED_UP_TO = 1000  # values of a range; a short range and the same numbers in a list are then the same sweep
 
@@ -179,7 +180,7 @@ class Axis:
     values: Sequence[float] | Sequence[str]
     level: NDArray[np.intp]
 
-    @property
+    @cached_property
     def numbers(self) -> FloatArray | None:
         """Values of the axis as numbers, shape (levels,); None for strings."""
         texts = len(self.values) > 0 and isinstance(self.values[0], str)
@@ -295,21 +296,34 @@ def axes_of(overrides: Sequence[Sequence[str]]) -> tuple[list[Axis], list[str]]:
 
 def _of_grid(overrides: Axes) -> Iterator[tuple[str, Sequence[Any], int]]:
     """Yield keys, their values in turn (a string if all cells share it), and the number of cells for each value."""
-    for entry, times in overrides.runs_of_levels():
+    entries = [*overrides.runs_of_levels()]
+    swept = [entry.key.lstrip("+") for entry, _ in entries if not isinstance(entry, str)]
+    for entry, times in entries:
         if isinstance(entry, str) or all(value == entry.values[0] for value in entry.values):
             key, text = split_override(entry if isinstance(entry, str) else entry.text(0))
             yield key, text, times
         else:
-            yield entry.key.lstrip("+"), entry.values, times
+            key = entry.key.lstrip("+")
+            of_keys = swept.count(key) > 1 and all(isinstance(value, Mapping) for value in entry.values)
+            yield f"{key}{{}}" if of_keys else key, entry.values, times
 
 
 def _of_jobs(overrides: Sequence[Sequence[str]]) -> Iterator[tuple[str, Sequence[Any], int]]:
     """Yield keys, their values by job (a string if all jobs share it), and 1."""
-    given = [dict(map(split_override, job)) for job in overrides]
+    given = [_by_key(job) for job in overrides]
     for key in dict.fromkeys(key for job in given for key in job if is_simulated(key)):
         texts = [job.get(key, "") for job in given]
         numbers = [_number(text) for text in texts]
         yield key, texts[0] if len(set(texts)) == 1 else texts if None in numbers else numbers, 1
+
+
+def _by_key(job: Sequence[str]) -> dict[str, str]:
+    """Return the values of a job by key: the last of each key, and with it the mappings of the key."""
+    found: dict[str, str] = {}
+    for key, text in map(split_override, job):
+        both = key in found and "{" in (found[key][:1], text[:1])
+        found[key] = f"{found[key]} {text}" if both else text
+    return found
 
 
 def make_axis(name: str, values: Sequence[Any]) -> Axis:

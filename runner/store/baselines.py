@@ -1,13 +1,12 @@
-"""Baselines of `runner check`: bands for the metrics of a run, and stored metrics of the cells of a sweep.
+"""Baselines of `runner check`: bands for the metrics of a run; those of a sweep are in `cells`.
 
-A file of bands is `{schema: 1, metrics: {NAME: {min:, max:, reason:, margin:}}}`. A file of a sweep is `{schema: 1,
-cells: {OVERRIDES: {NAME: {unit:, median:, min:, max:, seeds:}}}}`. `runner check --save-baseline` writes the file of a
-sweep. If the file exists and has bands, it sets their ends again, from a sweep over the seed.
+A file of bands is `{schema: 1, metrics: {NAME: {min:, max:, reason:, margin:}}}`. If `runner check --save-baseline`
+finds such a file, it sets the ends of the bands again, from a sweep over the seed.
 """
 
 import math
 import re
-from collections.abc import Callable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from itertools import takewhile
 from pathlib import Path
@@ -24,20 +23,19 @@ from runner.base.dotted_keys import dotted, leaves
 from runner.base.errors import RunnerError, StoreError, nearest, unknown
 from runner.base.limits import Limit, read_text
 from runner.base.paths import studies_dir
-from runner.base.sanitize import escaped
 from runner.config.compose.files import described_files
 from runner.config.compose.messages import describe
 from runner.config.judgement import Bound
 from runner.plugins.metric_units import unit_of, units
 from runner.schema.model import StrictModel
-from runner.store import Run, Sweep
+from runner.store import Run
 from runner.store.atomic import write_atomically
+from runner.store.cells import FORMER, FormerBaseline, SweepBaseline
 from runner.store.record import Metric
 
 SCHEMA = 1
 _BOUNDS = Bounds(Limit(200_000_000, "bytes"), values=5_000_000)  # about 10^5 cells
-_ROUNDING = 1e-6  # relative; rounding differences between machines
-_OTHER_MACHINES = 0.02  # relative; the same, over a whole run
+_OTHER_MACHINES = 0.02  # relative; rounding differences between machines, over a whole run
 _OF_SEEDS = re.compile(r"; \d+ seeds gave .*$", re.DOTALL)  # at the end of a reason
 _FOLDER = "references"  # of a study
 
@@ -52,33 +50,6 @@ class Band(Bound):
 
     reason: Annotated[str, Field(min_length=1)]
     margin: NonNegativeFloat | None = None
-
-
-class Spread(StrictModel):
-    """Values of one metric over the seeds.
-
-    Attributes:
-        unit: Unit of the metric.
-        median: Median over the repetitions; null if half of them or more have no value.
-        min: Smallest value; null if no repetition has one.
-        max: Largest value; null if any repetition has none.
-        seeds: Number of repetitions.
-    """
-
-    unit: str
-    median: float | None
-    min: float | None
-    max: float | None
-    seeds: int
-
-    def holds(self, value: float | None) -> bool:
-        """Return True if a median is in the range of the seeds; no value counts as above every number."""
-        low = math.inf if self.min is None else self.min
-        high = math.inf if self.max is None else self.max
-        return low <= (math.inf if value is None else value) <= high
-
-
-Cells = Mapping[str, Mapping[str, Spread]]
 
 
 def _check_schema(number: object) -> object:
@@ -103,11 +74,6 @@ def _check_some(entries: dict[str, Any]) -> dict[str, Any]:
 class _BandFile(StrictModel):
     schema_: Annotated[object, AfterValidator(_check_schema), Field(alias="schema")]
     metrics: Annotated[dict[Annotated[str, AfterValidator(_check_metric)], Band], AfterValidator(_check_some)]
-
-
-class _CellFile(StrictModel):
-    schema_: Annotated[object, AfterValidator(_check_schema), Field(alias="schema")]
-    cells: Annotated[dict[str, dict[str, Spread]], AfterValidator(_check_some)]
 
 
 @dataclass(frozen=True)
@@ -140,28 +106,7 @@ class Finding:
     good: bool
 
 
-@dataclass(frozen=True)
-class Move:
-    """A metric, or a whole cell, that changed since the baseline was saved.
-
-    Attributes:
-        cell: Overrides that distinguish the cell from others.
-        metric: Name of the metric; empty for a whole cell.
-        was: Values in the baseline; None if it has none.
-        value: Its median now; None if there is none.
-        remark: What happened to the whole cell, such as its failure; empty for a metric.
-        beyond: Whether the change exceeds the spread of the seeds.
-    """
-
-    cell: str
-    metric: str
-    was: Spread | None
-    value: float | None
-    remark: str
-    beyond: bool
-
-
-def load_baseline(path: Path, name: str = "") -> Bands | Cells:
+def load_baseline(path: Path, name: str = "") -> Bands | SweepBaseline:
     """Read a baseline of runs or of a sweep.
 
     Args:
@@ -183,13 +128,17 @@ def load_baseline(path: Path, name: str = "") -> Bands | Cells:
     except (OSError, ValueError, OmegaConfBaseException) as error:
         reason = error.strerror if isinstance(error, OSError) else error
         raise StoreError(f"cannot read the baseline {path}: {reason}") from error
-    model: type[_BandFile | _CellFile] = _CellFile if "cells" in content else _BandFile
+    model: type[_BandFile | SweepBaseline | FormerBaseline] = _BandFile
+    if "cells" in content:
+        model = FormerBaseline if content.get("schema") == FORMER else SweepBaseline
     try:
         file = model.model_validate(content)
     except ValidationError as error:
         problems = [f"  - {problem}" for problem in describe("", model, error)]
         raise StoreError("\n".join([f"{path} is not a valid baseline:", *problems])) from None
-    return file.cells if isinstance(file, _CellFile) else Bands(name or str(path), file.metrics)
+    if isinstance(file, FormerBaseline):
+        return file.renewed()
+    return file if isinstance(file, SweepBaseline) else Bands(name or str(path), file.metrics)
 
 
 def check_run(run: Run, baseline: Bands) -> list[Finding]:
@@ -200,26 +149,6 @@ def check_run(run: Run, baseline: Bands) -> list[Finding]:
         good = run.status == "ok" and value is not None and band.holds(value)
         findings.append(Finding(metric, value, band, good))
     return findings
-
-
-def save_baseline(sweep: Sweep, path: Path) -> int:
-    """Write the baseline of a sweep; return its number of metrics.
-
-    Raises:
-        StoreError: if a run of the sweep is missing or failed, or the file cannot be written.
-    """
-    cells: dict[str, dict[str, Any]] = {}
-    for cell, run in zip(cell_names(sweep), sweep.runs(), strict=True):
-        if run.failure is not None:
-            raise StoreError(f"a failed run cannot be in a baseline: [{cell}] {run.failure}")
-        cells[cell] = {
-            name: {**{key: metric[key] for key in ("unit", "median", "min", "max")}, "seeds": run.record["repetitions"]}
-            for name, metric in run.record["metrics"].items()
-        }
-    text = yaml.dump({"schema": SCHEMA, "cells": cells}, sort_keys=False, width=120, Dumper=yaml.CSafeDumper)
-    head = f"# Metrics of each cell over its seeds; written by `runner check DIR --save-baseline {path.name}` after\n"
-    write_atomically(path, f"{head}# {escaped(sweep.command)}\n{text}".encode())
-    return sum(map(len, cells.values()))
 
 
 def renew_bands(bands: Bands, runs: Sequence[Run], path: Path) -> int:
@@ -271,45 +200,6 @@ def _renewed(band: Band, seeds: Sequence[Metric]) -> dict[str, Any]:
 def _to_three_digits(value: float, direction: Callable[[float], int]) -> float:
     digits = 2 - math.floor(math.log10(abs(value) or 1.0))
     return round(direction(value * 10.0**digits) / 10.0**digits, digits)
-
-
-def find_moves(sweep: Sweep, baseline: Cells) -> list[Move]:
-    """Return everything that changed between a baseline and a sweep, cell by cell.
-
-    Raises:
-        StoreError: if a run of the sweep is missing or damaged.
-    """
-    moves: list[Move] = []
-    found = set()
-    for cell, run in zip(cell_names(sweep), sweep.runs(), strict=True):
-        found.add(cell)
-        if cell not in baseline:
-            moves.append(Move(cell, "", None, None, "is new", False))
-        elif run.failure is not None:
-            moves.append(Move(cell, "", None, None, run.failure, True))
-        else:
-            moves += _compare(cell, run, baseline[cell])
-    return moves + [Move(cell, "", None, None, "is gone", True) for cell in baseline if cell not in found]
-
-
-def cell_names(sweep: Sweep) -> list[str]:
-    """Return the overrides of each cell of a sweep that not all cells share."""
-    shared = set(sweep.overrides[0]).intersection(*sweep.overrides)
-    return [" ".join(text for text in job if text not in shared) or "all" for job in sweep.overrides]
-
-
-def _compare(cell: str, run: Run, baseline: Mapping[str, Spread]) -> Iterator[Move]:
-    for name in dict.fromkeys([*baseline, *run.metrics]):
-        was, metric = baseline.get(name), run.metrics.get(name)
-        value = None if metric is None else metric.median
-        if was is None or metric is None:
-            yield Move(cell, name, was, value, "", was is not None)
-        elif not _same(was.median, value):
-            yield Move(cell, name, was, value, "", not was.holds(value))
-
-
-def _same(a: float | None, b: float | None) -> bool:
-    return a == b if a is None or b is None else math.isclose(a, b, rel_tol=_ROUNDING, abs_tol=1e-12)
 
 
 def shipped_baselines() -> dict[str, str]:

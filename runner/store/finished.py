@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 
 from runner.base.arrays import FloatArray
 from runner.base.errors import StoreError
-from runner.store.atomic import write_atomically
+from runner.store.atomic import refuse_links, write_atomically
 from runner.store.names import Names, best_of_each, look_up
 from runner.store.run import Run, open_run
 from runner.store.seal import DamagedError, check_job, read_json, sealed_json
@@ -85,7 +85,8 @@ class Finished(Outcomes):
         caveats = np.concatenate([part.caveats for part in parts] or [np.zeros(0, dtype=np.int32)])
         failed = np.flatnonzero(rank[kept]).tolist()
         failures = {place: parts[self.shard[place]].failures.get(int(self.row[place]), "") for place in failed}
-        super().__init__(names[kept], rank[kept], caveats[kept], failures)
+        machines = np.concatenate([part.machines for part in parts] or [np.zeros(0, dtype=object)])
+        super().__init__(names[kept], rank[kept], caveats[kept], failures, machines[kept])
 
     def folders(self, names: Names) -> set[str]:
         """Return the given runs that may have their own run folder."""
@@ -153,6 +154,7 @@ def write_finer(outputs: Path, name: str, reason: str, metrics: Mapping[str, Flo
         StoreError: if it cannot be written.
     """
     values = {key: [float(one) if np.isfinite(one) else None for one in row] for key, row in metrics.items()}
+    refuse_links(outputs, outputs / FINER)
     write_atomically(outputs / FINER / f"{name}.json", sealed_json({"reason": reason, "metrics": values}))
 
 

@@ -8,6 +8,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Literal
 
+from runner.base.bounded_json import decode_json
 from runner.base.errors import RunnerError, StoreError
 from runner.config.compose.files import outputs_dir
 
@@ -59,7 +60,7 @@ def note(folder: Path) -> None:
 
     An outputs folder that cannot be written to causes a message, not an error.
     """
-    from runner.store.atomic import write_atomically  # not needed to read a note
+    from runner.store.atomic import refuse_links, write_atomically  # not needed to read a note
 
     place = folder.resolve()
     outputs, kind = place.parent.parent, place.parent.name
@@ -68,6 +69,7 @@ def note(folder: Path) -> None:
     order = max([time.time_ns(), *(known + 1 for known, _ in _notes(outputs, tuple(KINDS)))])
     try:
         content = json.dumps({"name": place.name, "order": order}).encode()
+        refuse_links(outputs, outputs / _NOTES)
         write_atomically(outputs / _NOTES / f"{kind}.json", content, flush=False)
     except StoreError as error:
         print(f"runner: `{WORD}` will not mean {folder}: {error}", file=sys.stderr)
@@ -108,6 +110,19 @@ def outputs_of(folder: Path) -> Path:
     return folder.parent.parent if stored else outputs_dir()
 
 
+def report_place(outputs: Path, name: str) -> Path:
+    """Return the folder of a report in an outputs folder, to write to.
+
+    Raises:
+        StoreError: if it is a link, or lies in one.
+    """
+    from runner.store.atomic import refuse_links  # not needed to find a result
+
+    folder = outputs / KINDS["report"].folder / name
+    refuse_links(outputs, folder)
+    return folder
+
+
 def open_stored(folder: Path) -> "Run | Sweep | Calibration":
     """Open a folder; a tuning is opened as the sweep of its trials.
 
@@ -138,7 +153,7 @@ def _notes(outputs: Path, kinds: Sequence[Kind]) -> Iterator[tuple[int, Path]]:
     """Yield the order and the folder of the latest of some kinds; notes that cannot be read are ignored."""
     for kind in kinds:
         try:
-            content = json.loads((outputs / _NOTES / f"{KINDS[kind].folder}.json").read_bytes())
+            content = decode_json((outputs / _NOTES / f"{KINDS[kind].folder}.json").read_bytes())
             order, name = int(content["order"]), str(content["name"])
         except (OSError, ValueError, TypeError, KeyError):
             continue

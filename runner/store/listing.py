@@ -7,7 +7,7 @@ from pathlib import Path
 
 from runner.base.errors import StoreError
 from runner.store.kinds import KINDS, Kind
-from runner.store.seal import read_json
+from runner.store.seal import DamagedError, read_json
 from runner.store.sweep import open_sweep
 
 _OF_SWEEPS: tuple[Kind, ...] = ("sweep", "tuning")
@@ -31,6 +31,11 @@ class Entry:
     size: int
     finished: bool
 
+    @property
+    def link(self) -> Path | None:
+        """Link in the outputs folder that leads to it, so that its files lie elsewhere; None if there is none."""
+        return next((path for path in (self.folder.parent, self.folder) if path.is_symlink()), None)
+
 
 def list_entries(outputs: Path) -> list[Entry]:
     """Return all stored results of an outputs folder, the newest first; those in shards have no folder of their own.
@@ -48,31 +53,52 @@ def runs_of_sweeps(entries: Sequence[Entry]) -> set[str]:
     """Return the names of the runs that belong to sweeps and tunings.
 
     Raises:
-        StoreError: if one of these is damaged.
+        StoreError: if one of these is damaged, or of another version.
     """
     names = set[str]()
     for entry in entries:
         if entry.kind in _OF_SWEEPS and entry.finished:
             names.update(open_sweep(entry.folder).hashes)
         if entry.kind == "tuning" and entry.finished:
-            fresh = read_json(entry.folder / KINDS["tuning"].files[0], "the tuning's command makes it again")["fresh"]
-            names |= {fresh["default"], fresh["tuned"]} if fresh else set()
+            names |= _fresh_runs(entry.folder / KINDS["tuning"].files[0])
     return names
 
 
-def removable(entries: Sequence[Entry], before: float) -> list[Entry]:
-    """Return the results that were written before a time, without the runs of sweeps and tunings that stay.
+def _fresh_runs(path: Path) -> set[str]:
+    """Return the names of the runs of a tuning on a fresh seed."""
+    remedy = "the tuning's command makes it again"
+    fresh = read_json(path, remedy).get("fresh")
+    if not fresh:
+        return set()
+    try:
+        return {str(fresh[name]) for name in ("default", "tuned")}
+    except (LookupError, TypeError) as error:
+        raise DamagedError(f"cannot read {path}: fresh does not name two runs; {remedy}") from error
+
+
+def removable(entries: Sequence[Entry], before: float) -> tuple[list[Entry], list[str]]:
+    """Return the results that were written before a time and can be removed, and the reasons why others stay.
+
+    Runs of sweeps and tunings that stay also stay, and so does a result that a link leads to.
 
     Args:
         entries: All results of an outputs folder.
         before: Time in s since 1970.
-
-    Raises:
-        StoreError: if a sweep that stays is damaged, so that its runs are not known.
     """
-    kept = runs_of_sweeps([entry for entry in entries if entry.written >= before])
-    return [entry for entry in entries
-            if entry.written < before and not (entry.kind == "run" and entry.folder.name in kept)]  # fmt: skip
+    old = [entry for entry in entries if entry.written < before]
+    links = dict.fromkeys(entry.link for entry in old if entry.link)
+    why = [f"{link}: it is a link, and nothing that it leads to is removed" for link in links]
+    kept, unknown = set[str](), False
+    for entry in entries:
+        if entry.written >= before:
+            try:
+                kept |= runs_of_sweeps([entry])
+            except StoreError as error:
+                unknown = True
+                why.append(f"{error}. Its runs are not known, and no run is removed")
+    found = [entry for entry in old
+             if not entry.link and not (entry.kind == "run" and (unknown or entry.folder.name in kept))]  # fmt: skip
+    return found, why
 
 
 def remove(entries: Sequence[Entry]) -> None:
@@ -85,7 +111,7 @@ def remove(entries: Sequence[Entry]) -> None:
         try:
             shutil.rmtree(entry.folder)
         except OSError as error:
-            raise StoreError(f"cannot remove {entry.folder}: {error.strerror}") from error
+            raise StoreError(f"cannot remove {entry.folder}: {error.strerror or error}") from error
 
 
 def _entries(kind: Kind, folder: Path) -> Iterator[Entry]:

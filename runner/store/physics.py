@@ -20,7 +20,7 @@ from runner.symbolic.cache import read_answer, write_answer
 
 # Folders and their modules. A module's id follows "="; without "=" it is the module's name.
 _TABLE = """
-    base: trace
+    base: portable trace
     calibration: __init__=calibration.__init__ gravity=calibration.gravity orientations procedure
         tool_centre_point=calibration.tool_centre_point tool_direction=calibration.tool_direction
         uncertainty=repeatability weighing
@@ -36,8 +36,8 @@ _TABLE = """
     controllers/macro_mini: inertial_damping macro_mini stage_loops
     controllers/operational_space: operational_space tip_task whole_body
     environments: __init__=environments.__init__ external_wrench=interaction free hand push wall
-    metrics: __init__=metrics.__init__ contact=metrics.contact effort family plant_error positioning reaching summary
-        tracking
+    metrics: __init__=metrics.__init__ contact=metrics.contact effort family plant_error positioning reaching
+        rounding summary tracking
     plants: __init__=plants.__init__ bullet bullet_servers compiled_friction compiled_motion=compiled.motion
         computation=plants.computation decoupled flexible_config flexible_joints=plants.flexible_joints friction
         friction_law kinematic motor_limits mujoco plant=plants.plant rk4 rk4_flexible_links servo wrappers=touched

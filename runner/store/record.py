@@ -1,6 +1,7 @@
 """Record of a run: its schema, and its metrics by name.
 
-Digests detect only accidental damage. `find_faults` also detects an invalid record with a valid digest.
+Digests detect only accidental damage. `find_faults` and `find_config_faults` detect invalid content with a valid
+digest.
 """
 
 from collections.abc import Callable, Iterator, Mapping
@@ -68,10 +69,24 @@ class _Provenance(_Part):
     command: str
     commit: str | None
     versions: dict[str, str]
-    machine: str
+    machine: str | dict[str, str]
     seed: int
     plant_step: float
     warnings: list[str]
+
+
+class _Arm(_Part):
+    tip: str = ""
+    home: list[float] = []
+
+
+class _Config(_Part):
+    seed: int = 0
+    repetitions: int = 1
+    robot: _Arm = _Arm()
+    controller: dict[str, Any] = {}
+    trajectory: dict[str, Any] = {}
+    plant: dict[str, Any] = {}
 
 
 class _Record(_Part):
@@ -87,11 +102,24 @@ class _Record(_Part):
 
 def find_faults(record: Any) -> str:
     """Return a message that describes the faults of a run's record; empty if there are none."""
+    faults = _faults(_Record, record)
+    return faults or ("failure: missing" if record["status"] == "failed" and not record.get("failure") else "")
+
+
+def find_config_faults(config: Any) -> str:
+    """Return a message on the values of a run's config that have another type than any run's; empty if there are none.
+
+    Only values that readers of stored runs use are checked.
+    """
+    return _faults(_Config, config)
+
+
+def _faults(model: type[_Part], content: Any) -> str:
     try:
-        found = _Record.model_validate(record)
+        model.model_validate(content)
     except ValidationError as error:
         return "; ".join(f"{'.'.join(map(str, item['loc']))}: {item['msg']}" for item in error.errors()[:3])
-    return "failure: missing" if found.status == "failed" and found.failure is None else ""
+    return ""
 
 
 @dataclass(frozen=True)

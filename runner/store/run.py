@@ -16,7 +16,7 @@ from runner.base.errors import RunnerError, StoreError, nearest
 from runner.config.composed import Composed
 from runner.store.kinds import kind_of
 from runner.store.parquet import VALUES_FILE, numbers, open_parquet, read_column, read_table
-from runner.store.record import Metrics, find_faults
+from runner.store.record import Metrics, find_config_faults, find_faults
 from runner.store.seal import MEND, DamagedError, Stored, read_job, write_job
 
 if TYPE_CHECKING:
@@ -125,6 +125,12 @@ class Run(Stored):
         """Integration error of the plant in repetition 0 (docs/stored_runs.md); None if it was not requested."""
         error: Mapping[str, Any] | None = self.record.get("plant_error")
         return error
+
+    @property
+    def rounding(self) -> Mapping[str, Any] | None:
+        """Growth of rounding errors in repetition 0 (docs/stored_runs.md); None if it was not requested."""
+        growth: Mapping[str, Any] | None = self.record.get("rounding")
+        return growth
 
     @property
     def caveat_rules(self) -> Mapping[str, Any] | None:
@@ -260,9 +266,12 @@ def open_run(folder: Path) -> Run:
             f"{folder} is {what}: it has no metrics.json; `runner OVERRIDES` simulates a run and prints its folder"
         )
     record, config = read_job(folder, "metrics.json")
-    faults = find_faults(record)
-    if faults:
-        raise DamagedError(f"cannot read {folder / 'metrics.json'}: it is no run's record: {faults}; {MEND}")
+    for name, what, faults in (
+        ("metrics.json", "record", find_faults(record)),
+        ("config.yaml", "config", find_config_faults(config)),
+    ):
+        if faults:
+            raise DamagedError(f"cannot read {folder / name}: it is no run's {what}: {faults}; {MEND}")
     return Run(folder, config, record)
 
 

@@ -15,11 +15,12 @@ from typing import Any
 
 import yaml
 
+from runner.base.bounded_json import decode_json
 from runner.base.bounded_yaml import STORED, YamlError, read_yaml
 from runner.base.cache import Memory
 from runner.base.errors import StoreError
 from runner.base.limits import RECORD, RECORD_VALUES, ExcessError
-from runner.store.atomic import write_atomically
+from runner.store.atomic import refuse_links, write_atomically
 
 SCHEMA = 3
 """Schema of every stored file; files of another schema are rejected."""
@@ -100,10 +101,10 @@ def read_json(path: Path, remedy: str) -> dict[str, Any]:
         content = path.read_bytes()
         if excess := RECORD_VALUES.excess(sum(map(content.count, (b",", b":", b"[", b"{")))):
             raise ExcessError(excess)
-        record = json.loads(content)
+        record = decode_json(content)
     except OSError as error:
         raise DamagedError(f"cannot read {path}: {error.strerror}; {remedy}") from error
-    except (ValueError, RecursionError) as error:
+    except ValueError as error:
         raise DamagedError(f"cannot read {path}: it is damaged: {_short(error)}; {remedy}") from error
     schema = record.get("schema") if isinstance(record, dict) else None
     if type(schema) is not int:
@@ -275,6 +276,7 @@ def write_job(
     Raises:
         StoreError: if a file cannot be written.
     """
+    refuse_links(folder.parent.parent, folder)
     for name, content in files.items():
         write_atomically(folder / name, content, flush=name in flushed)
     digests = {name: digest(content) for name, content in files.items()}

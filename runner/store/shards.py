@@ -11,7 +11,7 @@ wrote shards, so that the later of two shards is known without a clock.
 import json
 import math
 from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from functools import lru_cache, partial
 from pathlib import Path
 from typing import Any
@@ -20,17 +20,20 @@ import numpy as np
 from numpy.typing import NDArray
 
 from runner.base.arrays import FloatArray
+from runner.base.bounded_json import decode_json
 from runner.base.limits import ExcessError, open_parquet
+from runner.base.machine import Machine, read_machine
 from runner.store.atomic import write_atomically
 from runner.store.names import Names, Texts
 from runner.store.parquet import encode_parquet, list_column, numbers, plain_column, text_column
-from runner.store.record import find_faults
+from runner.store.record import find_config_faults, find_faults
 from runner.store.run import Run
 from runner.store.seal import SCHEMA, DamagedError, SchemaError, digest, encode_finite
 
 _COLUMNS = ("run", "config", "urdf", "record", "metrics")
-_SHARED = ["failure", "urdf", "metrics"]  # columns with many equal rows
+_SHARED = ["failure", "urdf", "metrics", "machine"]  # columns with many equal rows
 _CUT_SHORT = 2  # rank of an aborted run
+_MACHINE = "machine"
 METRIC = "metric "
 """Prefix of the name of a metric's column."""
 
@@ -47,12 +50,14 @@ class Outcome:
         failure: Message with the time, location and reason of the failure; empty for a good run.
         cut_short: Whether the run was aborted, for example by its time limit, instead of failing in the simulation.
         caveats: Number of caveats, reasons why the result may mislead.
+        machine: Machine that made the run.
     """
 
     name: str
     failure: str
     cut_short: bool
     caveats: int = 0
+    machine: Machine = field(default=Machine(), compare=False)
 
     @property
     def rank(self) -> int:
@@ -83,8 +88,9 @@ class ShardRow:
 
 def outcome(run: Run) -> Outcome:
     """Return the outcome of a run."""
-    failure = run.failure_record
-    return Outcome(run.hash, run.failure or "", failure is not None and failure["time"] is None, len(run.caveats))
+    failure, machine = run.failure_record, read_machine(run.record.get("provenance", {}).get("machine"))
+    cut_short = failure is not None and failure["time"] is None
+    return Outcome(run.hash, run.failure or "", cut_short, len(run.caveats), machine)
 
 
 def shard_files(outputs: Path) -> list[Path]:
@@ -143,6 +149,7 @@ def write_shard(outputs: Path, name: str, runs: Sequence[Run | ShardRow]) -> Pat
         "record": text_column([row.record for row in rows]),
         "metrics": text_column([json.dumps([name for name, _ in row.metrics]) for row in rows]),
         "caveats": plain_column(np.array([end.caveats for end in ends], dtype=np.int32)),
+        _MACHINE: text_column([encode_finite(end.machine.record()) for end in ends]),
     }
     fields = [pyarrow.field(name, column.type) for name, column in columns.items()]
     measured = list(metric_columns([(row.metrics, row.values) for row in rows]))
@@ -165,12 +172,14 @@ class Outcomes(Sequence[Outcome]):
         rank: Rank of each run, shape (n,); see Outcome.
         caveats: Number of caveats of each run, shape (n,).
         failures: Failures by index, only of failed runs.
+        machines: Machine that made each run, shape (n,).
     """
 
     names: Texts
     rank: NDArray[np.int8]
     caveats: NDArray[np.int32]
     failures: Mapping[int, str]
+    machines: NDArray[np.object_]
 
     def __len__(self) -> int:
         return len(self.names)
@@ -180,7 +189,8 @@ class Outcomes(Sequence[Outcome]):
             return [self[each] for each in range(*row.indices(len(self)))]
         row = range(len(self))[row]
         failure, name = self.failures.get(row, ""), self.names[row].decode()
-        return Outcome(name, failure, bool(self.rank[row] == _CUT_SHORT), int(self.caveats[row]))
+        cut_short = bool(self.rank[row] == _CUT_SHORT)
+        return Outcome(name, failure, cut_short, int(self.caveats[row]), self.machines[row])
 
 
 def read_outcomes(path: Path) -> Outcomes:
@@ -191,14 +201,23 @@ def read_outcomes(path: Path) -> Outcomes:
         SchemaError: if the shard has another schema.
     """
     columns = ("run", "failure", "cut_short", "caveats")
-    table = read_columns(path, columns)
+    table = read_columns(path, columns, _MACHINE)
     try:
         names, failures, cut_short, caveats = (table[name].to_pylist() for name in columns)
         rank = np.where(cut_short, _CUT_SHORT, np.array(failures, dtype=object) != "").astype(np.int8)
         failed = {row: text for row, text in enumerate(failures) if text}
-        return Outcomes(Names.of(names).texts, rank, np.array(caveats, dtype=np.int32), failed)
+        return Outcomes(Names.of(names).texts, rank, np.array(caveats, dtype=np.int32), failed, _machines(table))
     except (AttributeError, TypeError, ValueError) as error:
         raise DamagedError(f"cannot read {path}: it is not a shard: {error}; {_REMEDY}") from error
+
+
+def _machines(table: Any) -> NDArray[np.object_]:
+    """Return the machine of each row of a shard, shape (n,); unknown ones if an earlier version wrote the shard."""
+    if _MACHINE not in table.column_names:
+        return np.full(len(table), Machine(), dtype=object)
+    texts = table[_MACHINE].to_pylist()
+    known = {text: read_machine(json.loads(text)) for text in set(texts)}
+    return np.array([known[text] for text in texts], dtype=object)
 
 
 def open_row(path: Path, row: int) -> Run:
@@ -210,11 +229,11 @@ def open_row(path: Path, row: int) -> Run:
     """
     values = _read_once(path, _COLUMNS)
     try:
-        config, record, names = (json.loads(values[column][row].as_py()) for column in ("config", "record", "metrics"))
+        config, record, names = (decode_json(values[column][row].as_py()) for column in ("config", "record", "metrics"))
         if "metrics" not in record:
             record["metrics"] = _summarize(_read_once(path, (), METRIC), row, names)
-        fault = find_faults(record)
-    except (KeyError, ValueError, TypeError, RecursionError) as error:
+        fault = find_faults(record) or find_config_faults(config)
+    except (KeyError, ValueError, TypeError) as error:
         fault = str(error)
     if fault:
         raise DamagedError(f"cannot read {path}: row {row} is no run: {fault}; {_REMEDY}")

@@ -13,7 +13,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from runner.base.errors import StoreError
-from runner.store.atomic import write_atomically
+from runner.store.atomic import refuse_links, write_atomically
 from runner.store.axes import Axes, read_axes
 from runner.store.finished import Finished
 from runner.store.kinds import kind_of
@@ -162,6 +162,7 @@ def write_grid(outputs: Path, axes: Axes, names: Names, command: str, spec: "Map
     """
     runs = names.packed()
     folder = outputs / "sweeps" / _name(_grid_rows(axes, digest(runs)))
+    refuse_links(outputs, folder)
     write_atomically(folder / _RUNS, runs)
     content = {**_head(folder, command, spec), "axes": axes.content(), "cells": len(names), "runs": digest(runs)}
     write_atomically(folder / _FILE, seal_text(json.dumps(content, indent=1) + "\n"))
@@ -176,6 +177,7 @@ def write_jobs(
     date: str = "",
 ) -> None:
     """Store the overrides and the run of each job in a given folder, such as that of a tuning; see write_sweep."""
+    refuse_links(folder.parent.parent, folder)
     start = json.dumps(_head(folder, command, spec, date))[:-1]
     write_atomically(folder / _FILE, seal_text(f'{start}, "jobs": [\n' + ",\n".join(_rows(jobs)) + "\n]}\n"))
 

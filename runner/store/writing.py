@@ -16,18 +16,21 @@ from runner.base.trace import Trace
 from runner.metrics.caveats.rule import Found
 from runner.simulation.results import RunResult
 from runner.statistics.spec import bounds_of, judge
-from runner.store.atomic import write_atomically
+from runner.store.atomic import refuse_links, write_atomically
+from runner.store.kinds import FILES, KINDS
 from runner.store.parquet import OF_NUMBERS, VALUES_FILE, encode_parquet, plain_column, values_parquet
 from runner.store.run import Run
 from runner.store.seal import JsonTexts, encode_finite, write_job
 
 
 def prepare(outputs: Path) -> None:
-    """Check that runs can be stored in a folder, before anything is computed.
+    """Check that results can be stored in a folder, before anything is computed.
 
     Raises:
-        StoreError: if the folder cannot be created or written to.
+        StoreError: if the folder cannot be created or written to, or a folder in it is a link.
     """
+    for name in (*(kind.folder for kind in KINDS.values()), *FILES):
+        refuse_links(outputs, outputs / name)
     probe = outputs / "runs" / ".writable"
     try:
         write_atomically(probe, b"")
@@ -74,6 +77,8 @@ def make_record(result: RunResult) -> dict[str, Any]:
     record["metrics"] = {metric: summary.record() for metric, summary in result.metrics.items()}
     if result.plant_error is not None:
         record["plant_error"] = result.plant_error.record()
+    if result.rounding is not None:
+        record["rounding"] = result.rounding.record()
     record["timing"] = dict(result.timing)
     record["provenance"] = dict(result.provenance)
     return record

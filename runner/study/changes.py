@@ -1,18 +1,22 @@
 """Changes between two versions of a study: verdicts, findings, equations, caveats and numbers."""
 
-import json
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
+from runner.base.bounded_json import decode_json
 from runner.base.errors import RunnerError
 from runner.base.limits import RECORD, read_text
+from runner.base.machine import equal_up_to_rounding
 
 FILE = "conclusions.json"
 """Name of the file with a study's conclusions in the folder of its report."""
 
-KINDS = ("study", "verdict", "finding", "equation", "caveat", "measured", "words", "number")
+ROUNDED = "rounding"
+"""Kind of a number that is equal up to rounding."""
+
+KINDS = ("study", "verdict", "finding", "equation", "caveat", "measured", "words", "number", ROUNDED)
 """Kinds of changes, those that matter most first."""
 
 Value = str | float | None
@@ -50,7 +54,7 @@ def read_conclusions(path: Path) -> Mapping[str, Any]:
     """
     file = path / FILE if path.is_dir() else path
     try:
-        content = json.loads(read_text(file, RECORD))
+        content = decode_json(read_text(file, RECORD))
     except (OSError, ValueError) as error:
         raise RunnerError(f"cannot read {file}: {error}; `runner reproduce NAME --json > FILE` writes one") from None
     if not isinstance(content, dict) or not all(
@@ -65,19 +69,27 @@ def read_conclusions(path: Path) -> Mapping[str, Any]:
 def changes(old: Mapping[str, Any], new: Mapping[str, Any]) -> list[Change]:
     """Return the differences of two versions, by kind, the largest changes of numbers first.
 
+    Numbers that differ by no more than rounding have the kind ROUNDED; see `equal_up_to_rounding`.
+
     Args:
         old: Conclusions by the studies' names, also those of an earlier version of this package.
         new: The same of another version.
     """
     before, after = dict(_flat(old, new)), dict(_flat(new, old))
     found = [
-        Change(kind, name, before.get((kind, name)), after.get((kind, name)))
+        _change(kind, name, before.get((kind, name)), after.get((kind, name)))
         for kind, name in dict.fromkeys([*before, *after])
         if before.get((kind, name)) != after.get((kind, name))
     ]
+    ranks = {kind: rank for rank, kind in enumerate(KINDS)}
     return sorted(
-        found, key=lambda change: (KINDS.index(change.kind), -change.size if change.kind == "number" else 0.0)
+        found, key=lambda change: (ranks[change.kind], -change.size if change.kind in ("number", ROUNDED) else 0.0)
     )
+
+
+def _change(kind: str, name: str, old: Value, new: Value) -> Change:
+    rounded = isinstance(old, float) and isinstance(new, float) and equal_up_to_rounding(old, new)
+    return Change(ROUNDED if rounded else kind, name, old, new)
 
 
 def _flat(studies: Mapping[str, Any], others: Mapping[str, Any]) -> Iterator[tuple[tuple[str, str], Value]]:

@@ -123,7 +123,7 @@ def _validated(composed: Composed, part: UserPlugin) -> RunConfig:
     """
     law = composed.resolved["controller"]
     kind = law.get("kind") if isinstance(law, Mapping) else law
-    if kind != part.name or CONTROLLERS.is_ours(part.name):
+    if kind != part.name or not CONTROLLERS.is_user_supplied(part.name):
         must = f"must be '{part.name}', as the file is called, and that no name of a law of ours"
         raise ConfigError(f"controller.kind: {must}; found '{kind}'")
     return validate(composed)

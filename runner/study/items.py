@@ -6,6 +6,7 @@ from pathlib import Path
 from typing import Literal
 
 from runner.config.compose.composer import Composer
+from runner.config.compose.files import outputs_override
 from runner.store import Outcome
 from runner.sweeps.plan import Item, Listed
 from runner.sweeps.run import Engine, run_sweep
@@ -72,4 +73,4 @@ def make_items(items: Mapping[str, Item], way: Way, trace: Literal["all", "never
 def listed(items: Mapping[str, Item], way: Way, loader: Composer, trace: str = "all") -> Listed:
     """Return the plan of some runs and calibrations."""
     shared = [text for text in way.overrides if not text.startswith("hydra.")]
-    return Listed(items, [*shared, f"sweep.trace={trace}", f"outputs={way.outputs}"], loader)
+    return Listed(items, [*shared, f"sweep.trace={trace}", outputs_override(way.outputs)], loader)

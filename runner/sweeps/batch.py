@@ -6,7 +6,9 @@ import numpy as np
 
 from runner import store
 from runner.base.errors import StoreError
+from runner.base.machine import this_machine
 from runner.config.run import RunConfig
+from runner.config.settings import RunSettings
 from runner.metrics.summary import MOST_LISTED
 from runner.plugins.discovery import added_parts
 from runner.plugins.metric_units import units_of
@@ -25,8 +27,8 @@ Named = tuple[str, Collector]
 def make_together(jobs: Sequence[tuple[str, RunConfig]], rules: Rules, writer: ResultWriter) -> tuple[set[str], bool]:
     """Simulate the runs of a chunk that can share a batch; return the names of the finished ones and if one failed.
 
-    Runs with metrics of a plug-in are left out, and so is a run with too many repetitions for its record to list. The
-    caller simulates each of them on its own, block after block.
+    Runs with metrics of a plug-in are left out, and so are runs with too many repetitions for the record to list, and
+    runs that are compared with others by `plant_error`. The caller simulates each of them on its own, block by block.
 
     If the batch raises an error, for example in a plug-in, the runs that are left are not simulated here. The caller
     simulates them one by one, which shows which run caused the error.
@@ -42,7 +44,7 @@ def make_together(jobs: Sequence[tuple[str, RunConfig]], rules: Rules, writer: R
     batcher, texts, made, failed = BatchSimulator(), JsonTexts(), set[str](), False
     try:
         with deadline(rules.settings.time_limit):
-            few = [] if added_parts("metric") else [job for job in jobs if job[1].settings.repetitions <= MOST_LISTED]
+            few = [] if added_parts("metric") else [job for job in jobs if _fits(job[1].settings)]
             found = [(name, batcher.repetitions(config)) for name, config in few]
         chosen = [(name, runs) for name, runs in found if runs is not None]
         steps = simulate_together([runs for _, runs in chosen], batcher)
@@ -67,6 +69,10 @@ def make_together(jobs: Sequence[tuple[str, RunConfig]], rules: Rules, writer: R
     return made, failed
 
 
+def _fits(settings: RunSettings) -> bool:
+    return settings.repetitions <= MOST_LISTED and not settings.plant_error
+
+
 def _rows(runs: Iterable[Named], texts: JsonTexts, batcher: BatchSimulator) -> Iterator[ShardRow]:
     """Yield successful runs as rows of a shard."""
     alike: dict[tuple[object, ...], list[Named]] = {}
@@ -86,7 +92,7 @@ def _rows(runs: Iterable[Named], texts: JsonTexts, batcher: BatchSimulator) -> I
         )
         for (name, run), record in zip(some, records, strict=True):
             config = run.config
-            end = store.Outcome(name, "", False, len(run.caveats.caveats))
+            end = store.Outcome(name, "", False, len(run.caveats.caveats), this_machine())
             yield ShardRow(end, texts.of(config.resolved), config.arm.urdf, record, metrics, run.values)
 
 

@@ -18,7 +18,7 @@ from numpy.typing import NDArray
 from runner.base.cache import Memory
 from runner.base.dotted_keys import dotted, leaves, split_override
 from runner.store.run import Run
-from runner.store.seal import simulated_part
+from runner.store.seal import MEND, DamagedError, simulated_part
 
 if TYPE_CHECKING:
     from runner.store.axes import Axis
@@ -68,7 +68,11 @@ class Distance:
     goal: tuple[float, ...]
 
     def __float__(self) -> float:
-        return _rounded(math.dist(_tip_position(self.urdf, self.tip, self.home), self.goal))
+        try:
+            return _rounded(math.dist(_tip_position(self.urdf, self.tip, self.home), self.goal))
+        except ValueError as error:
+            fault = f"robot.home of a stored run: {list(self.home)} does not fit its robot"
+            raise DamagedError(f"{fault}; {MEND}") from error
 
     def __eq__(self, other: object) -> bool:
         return isinstance(other, Distance) and (astuple(self) == astuple(other) or float(self) == float(other))

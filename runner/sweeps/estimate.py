@@ -1,5 +1,6 @@
 """Run times of jobs: estimates before the start, and measurements during a sweep."""
 
+import math
 import time
 from collections.abc import Callable
 from dataclasses import dataclass
@@ -79,7 +80,7 @@ class Pace:
             write_atomically(self._folder / NOTE, sealed_json({"seconds_per_run": (now - self._began) / self._made}))
 
 
-def estimate(plan: Plan, checked: Checked, cells: NDArray[np.intp], kept: float) -> Estimate:
+def estimate(plan: Plan, checked: Checked, cells: NDArray[np.intp], kept: float, until: float = math.inf) -> Estimate:
     """Return the estimated CPU time of some cells, measured on a few ticks of a few of their runs.
 
     Args:
@@ -87,20 +88,21 @@ def estimate(plan: Plan, checked: Checked, cells: NDArray[np.intp], kept: float)
         checked: Result of the check of the plan.
         cells: The cells, shape (n,); in a tuning, one for each trial.
         kept: Fraction of the runs that keep their trace.
+        until: Time of `time.monotonic` from which a TimeLimitError of the caller's deadline is passed on, in s.
     """
     runs = np.setdiff1d(cells, list(checked.calibrations), assume_unique=True) if checked.calibrations else cells
     # Runs with very many ticks, such as a thousand repetitions, may need another time for a tick than the others.
     sizes = np.floor(np.log10(np.maximum(checked.costs[runs], 1)))
-    found = [_estimate_alike(plan, checked, runs[sizes == size], kept) for size in np.unique(sizes)]
+    found = [_estimate_alike(plan, checked, runs[sizes == size], kept, until) for size in np.unique(sizes)]
     seconds = _FIXED * (len(cells) - len(runs)) + sum(each.seconds for each in found)
     return Estimate(seconds, next((each.known for each in found if each.known != "about"), "about"))
 
 
-def _estimate_alike(plan: Plan, checked: Checked, runs: NDArray[np.intp], kept: float) -> Estimate:
+def _estimate_alike(plan: Plan, checked: Checked, runs: NDArray[np.intp], kept: float, until: float) -> Estimate:
     """Return the CPU time of runs with a similar number of ticks, from the median of a few."""
     chosen = sorted({int(runs[len(runs) * part // _PROBES]) for part in range(_PROBES)})
     most = int(min(_TICKS_TOGETHER, checked.costs[runs].sum()))  # more would take longer than the runs themselves
-    probed = sorted(_probe(plan.composed(cell), int(checked.costs[cell]), most) for cell in chosen)
+    probed = sorted(_probe(plan.composed(cell), int(checked.costs[cell]), most, until) for cell in chosen)
     per_tick, together, known = probed[len(probed) // 2]
     in_shards = (1.0 - kept) * len(runs) if together else 0.0
     fixed = _FIXED * (len(runs) - in_shards) + _FIXED_TOGETHER * in_shards
@@ -110,7 +112,7 @@ def _estimate_alike(plan: Plan, checked: Checked, runs: NDArray[np.intp], kept: 
     return Estimate(float(fixed + per_tick * checked.costs[runs].sum()), known)
 
 
-def _probe(composed: Composed, ticks: int, ticks_together: int) -> tuple[float, bool, Known]:
+def _probe(composed: Composed, ticks: int, ticks_together: int, until: float) -> tuple[float, bool, Known]:
     """Return the time for a tick of a run, in s, if the run can be simulated together with others, and its kind.
 
     Assembly and compilation are not counted because they happen once.
@@ -124,6 +126,8 @@ def _probe(composed: Composed, ticks: int, ticks_together: int) -> tuple[float, 
         probed = min(ticks, PROBED_TICKS)
         return seconds_per_tick(config, deadline(_PROBED_WITHIN)), False, "about"
     except TimeLimitError:
+        if time.monotonic() >= until:
+            raise
         return _PROBED_WITHIN / probed, False, "more than"
     except Exception:  # the error of a component is stored with its run
         return 0.0, False, "about"

@@ -71,12 +71,10 @@ def _made(run: Run) -> tuple[str, Mapping[str, FloatArray]] | None:
     # Imports of the simulator, which a comparison of runs with known errors does not need
     from runner.config.validation import validate
     from runner.simulation.run import simulate_blocks, threads_allowed
-    from runner.store.identity import run_hash
+    from runner.sweeps.rerun import checked_config
 
     try:
-        config = validate(run.composed)
-        if run_hash(run.config, config.arm.urdf) != run.hash:
-            return None
+        config = checked_config(run)
         if reason := _find_obstacle(config):
             return reason, {}
         resolved = _finer(run.config, config)

@@ -10,6 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from runner.base.arrays import FloatArray
+from runner.base.machine import Machine, read_machine
 from runner.store.parquet import numbers
 from runner.store.run import Run
 from runner.store.shards import METRIC, open_row, read_columns
@@ -32,9 +33,11 @@ class Gathered:
         seeds: Seed of each cell, shape (cells,).
         units: Unit of each metric.
         provenance: Plant, commit, machine, date and versions of the runs, each with its distinct values.
+        machines: Distinct machines of the runs.
         caveats: Caveats of each cell.
         rules: Rules that were checked for caveats, each with the number of cells.
         configs: Each resolved config with its cells; the configs of a shard's cells may differ in the seed.
+        rounding: Relative change of each metric through rounding, shape (cells,); 0 if it is unknown.
     """
 
     def __init__(self, cells: int) -> None:
@@ -43,9 +46,11 @@ class Gathered:
         self.seeds = np.zeros(cells, dtype=np.int64)
         self.units: dict[str, str] = {}
         self.provenance: dict[str, dict[str, None]] = {}
+        self.machines: dict[Machine, None] = {}
         self.caveats: list[Sequence[Mapping[str, Any]]] = [()] * cells
         self.rules: list[tuple[Mapping[str, Any] | None, int]] = []
         self.configs: list[tuple[Mapping[str, Any], list[Cells]]] = []
+        self.rounding: dict[str, FloatArray] = {}
         self._places: dict[object, int] = {}  # index of each config, by its JSON without the seed
         self._values: dict[str, FloatArray] = {}
         self._measured = np.zeros(cells, dtype=bool)
@@ -57,6 +62,8 @@ class Gathered:
         self.seeds[cell] = int(run.provenance["seed"])
         self._count_rules(run.caveat_rules, 1)
         self._note(run)
+        for name, change in ({} if run.rounding is None else run.rounding["metrics"]).items():
+            self.rounding.setdefault(name, np.zeros(len(self.hashes)))[cell] = change
         for name, metric in run.metrics.items():
             own = run.values(name)
             row = np.where(np.isnan(own), np.inf, own)
@@ -82,8 +89,9 @@ class Gathered:
             record = _parsed(table["record"].to_pylist())
             provenance = record.field("provenance")
             seeds, caveats = provenance.field("seed").to_numpy(), _caveats(record)
-            metrics, made_by = list(_metrics(table)), list(_made_by(provenance))
-            rules = _rules(record) if seeds.dtype.kind == "i" else None
+            metrics, made_by, machines = list(_metrics(table)), list(_made_by(provenance)), _machines(provenance)
+            columnar = seeds.dtype.kind == "i" and record.type.get_field_index("rounding") < 0
+            rules = _rules(record) if columnar else None
         if rules is None:
             for row, cell in zip(rows.tolist(), cells.tolist(), strict=True):
                 self.add_run(cell, open_row(path, row))
@@ -101,7 +109,8 @@ class Gathered:
                 self._places[key] = len(self.configs)
                 self.configs.append((self._resolver.resolve(run), []))
             self.configs[self._places[key]][1].append(cells[same])
-        for name, texts in made_by:
+        self.machines |= machines
+        for name, texts in [*made_by, ("machine", [machine.text for machine in machines])]:
             self.provenance.setdefault(name, {}).update(dict.fromkeys(texts))
         for name, unit, members, values in metrics:
             self._put(name, unit, cells[members], values)
@@ -115,12 +124,13 @@ class Gathered:
 
     def _note(self, run: Run) -> None:
         """Add the provenance of a run."""
-        record = run.provenance
+        record, machine = run.provenance, read_machine(run.provenance["machine"])
+        self.machines[machine] = None
         pairs = [
             ("plant", f"{run.config['plant']['kind']}, step {record['plant_step']:g} s"),
             ("commit", commit_text(record["commit"])),
             ("seed", str(record["seed"])),
-            ("machine", str(record["machine"])),
+            ("machine", machine.text),
             *((name, str(version)) for name, version in record["versions"].items()),
             ("made on", str(record["date"])),
         ]
@@ -167,7 +177,7 @@ def _parsed(records: Sequence[str]) -> Any:
     caveat = pyarrow.struct({"rule": text, "text": text, "value": number})
     known = pyarrow.schema({
         "caveats": pyarrow.list_(caveat),
-        "provenance": pyarrow.struct({"date": text, "commit": text, "machine": text, "command": text}),
+        "provenance": pyarrow.struct({"date": text, "commit": text, "command": text}),
     })  # fmt: skip
     table = pyarrow.json.read_json(
         io.BytesIO(content),
@@ -228,11 +238,22 @@ def _caveats(record: Any) -> list[Sequence[Mapping[str, Any]]]:
 def _made_by(provenance: Any) -> Iterator[tuple[str, Sequence[str]]]:
     """Yield the distinct values of each provenance entry."""
     yield "commit", [commit_text(value) for value in provenance.field("commit").unique().to_pylist()]
-    yield "machine", provenance.field("machine").unique().to_pylist()
     versions = provenance.field("versions")
     for field in versions.type:
         yield field.name, [value for value in versions.field(field.name).unique().to_pylist() if value is not None]
     yield "made on", provenance.field("date").unique().to_pylist()
+
+
+def _machines(provenance: Any) -> dict[Machine, None]:
+    """Return the distinct machines of a shard's runs."""
+    import pyarrow
+
+    stored = provenance.field("machine")
+    if not isinstance(stored, pyarrow.StructArray):
+        return dict.fromkeys(map(read_machine, stored.unique().to_pylist()))
+    names = [part.name for part in stored.type]
+    rows = set(zip(*(part.to_pylist() for part in stored.flatten()), strict=True))
+    return dict.fromkeys(read_machine(dict(zip(names, row, strict=True))) for row in rows)
 
 
 def _metrics(table: Any) -> Iterator[tuple[str, str, Cells, FloatArray]]:

@@ -14,6 +14,7 @@ from runner.base import progress
 from runner.base.arrays import FloatArray
 from runner.base.dotted_keys import get, split_override
 from runner.base.errors import RunnerError, StoreError, unknown
+from runner.base.machine import Machine
 from runner.store.axes import Axis, axes_of, find_cells, make_axis
 from runner.store.finished import Finished, finer_names, read_finer
 from runner.store.run import Run
@@ -45,11 +46,13 @@ class Measurements:
         configs: Each resolved config with its cells; the configs of these cells may differ in the seed.
         finer: Values of each metric in the first repetitions on a finer step of the plant, as `values`; NaN if
             unknown.
+        rounding: Relative change of each metric through rounding, shape (cells,); 0 if it is unknown.
         name: Name in a comparison, such as "A".
         folder: Folder of the sweep or run.
         command: The command that makes the sweep or run.
         missing: Number of cells that are not stored.
         damage: Damaged files, a message for each.
+        machines: Distinct machines that made the runs.
     """
 
     axes: Sequence[Axis]
@@ -66,11 +69,13 @@ class Measurements:
     differences: Sequence[Difference] = ()
     configs: Sequence[tuple[Mapping[str, Any], NDArray[np.intp]]] = ()
     finer: Mapping[str, FloatArray] = field(default_factory=dict)
+    rounding: Mapping[str, FloatArray] = field(default_factory=dict)
     name: str = ""
     folder: Path = Path()
     command: str = ""
     missing: int = 0
     damage: Sequence[str] = ()
+    machines: Sequence[Machine] = ()
 
     @property
     def failed(self) -> int:
@@ -325,6 +330,8 @@ def _measured(overrides: Sequence[Sequence[str]], gathered: Gathered) -> Measure
         gathered.seeds,
         resolved.differences(axes),
         [(config, np.concatenate(members)) for config, members in gathered.configs],
+        machines=list(gathered.machines),
+        rounding=gathered.rounding,
     )
 
 

@@ -1,10 +1,12 @@
 """Outcomes of the jobs of a sweep, in a few bytes each."""
 
+from collections import Counter
 from collections.abc import Iterable, Iterator, Mapping
 
 import numpy as np
 from numpy.typing import NDArray
 
+from runner.base.machine import Machine
 from runner.store import Finished, Outcome
 from runner.store.names import Names, best_of_each, look_up
 
@@ -25,6 +27,7 @@ class Ends(Mapping[str, Outcome]):
         self._rank = np.full(len(first), _NOT_YET, dtype=np.int8)
         self._caveats = np.zeros(len(first), dtype=np.int32)
         self._failures: dict[int, str] = {}
+        self._machines = np.full(len(first), Machine(), dtype=object)
         self._places = look_up(names.texts, self._names).astype(np.int32)
 
     def add(self, outcomes: Iterable[Outcome]) -> None:
@@ -33,6 +36,7 @@ class Ends(Mapping[str, Outcome]):
         places = look_up(Names.of(end.name for end in given).texts, self._names)
         self._rank[places] = [end.rank for end in given]
         self._caveats[places] = [end.caveats for end in given]
+        self._machines[places] = [end.machine for end in given]
         for place, end in zip(places.tolist(), given, strict=True):
             self._failures.pop(place, None)
             if end.failure:
@@ -42,6 +46,7 @@ class Ends(Mapping[str, Outcome]):
         """Add the outcomes of jobs in shards, given by their indices in `finished.names`."""
         places = look_up(finished.names[stored], self._names)
         self._rank[places], self._caveats[places] = finished.rank[stored], finished.caveats[stored]
+        self._machines[places] = finished.machines[stored]
         for which in np.flatnonzero(finished.rank[stored]).tolist():
             self._failures[int(places[which])] = finished.failures[int(stored[which])]
 
@@ -61,6 +66,11 @@ class Ends(Mapping[str, Outcome]):
         found: NDArray[np.int32] = self._caveats[self._places][self._rank[self._places] != _NOT_YET]
         return found
 
+    @property
+    def machines(self) -> Counter[Machine]:
+        """Number of jobs that ended on each machine; an unknown machine is a Machine without parts."""
+        return Counter(self._machines[self._rank != _NOT_YET].tolist())
+
     def __len__(self) -> int:
         return int(np.sum(self._rank != _NOT_YET))
 
@@ -72,4 +82,4 @@ class Ends(Mapping[str, Outcome]):
         if place < 0 or self._rank[place] == _NOT_YET:
             raise KeyError(name)
         rank, caveats = int(self._rank[place]), int(self._caveats[place])
-        return Outcome(name, self._failures.get(place, ""), rank == _CUT_SHORT, caveats)
+        return Outcome(name, self._failures.get(place, ""), rank == _CUT_SHORT, caveats, self._machines[place])

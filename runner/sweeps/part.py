@@ -39,7 +39,6 @@ class Part(Plan):
         parts: Number of parts.
 
     Attributes:
-        whole: The grid.
         cells: Numbers of the cells in the grid.
         name: The part as K/N.
 
@@ -51,7 +50,12 @@ class Part(Plan):
         super().__init__(whole._source)
         if parts > len(whole):
             raise ConfigError(f"sweep.part: must have at most as many parts as cells, {len(whole)}; found {parts}")
-        self.whole, self.cells, self.name = whole, range(number, len(whole), parts), f"{number}/{parts}"
+        self._whole, self.cells, self.name = whole, range(number, len(whole), parts), f"{number}/{parts}"
+
+    @property
+    def whole(self) -> Grid:
+        """The grid."""
+        return self._whole
 
     def __len__(self) -> int:
         return len(self.cells)

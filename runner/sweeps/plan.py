@@ -14,7 +14,7 @@ from runner.config.compose.overrides import prepare
 from runner.config.composed import Composed
 from runner.schema.model import LARGEST_WHOLE
 from runner.store.axes import Axes, SweepAxis, digits, is_simulated
-from runner.sweeps.swept import SweptKey, parse_sweep, read_keys
+from runner.sweeps.swept import SweptKey, merge, parse_sweep, read_keys
 from runner.sweeps.template import Template
 
 _SEED = "seed"
@@ -69,6 +69,11 @@ class Plan(ABC):
     def __init__(self, source: Composer) -> None:
         self._source = source
         self._templates: dict[Hashable, Template | ConfigError] = {}
+
+    @property
+    def whole(self) -> "Plan":
+        """The plan of the whole sweep, of which this one may be a part."""
+        return self
 
     @abstractmethod
     def __len__(self) -> int:
@@ -199,16 +204,18 @@ class Grid(Plan):
             template = self._template(self._locate(cell)[0])
         except ConfigError:
             return True  # all of these cells have the same problem
-        return template.changes_alone(sum(not key.option for key in self._keys[:place]), (_SEED,))
+        pairs = zip(self._keys[:place], digits(cell, self._sizes), strict=False)
+        return template.changes_alone(sum(not key.chooses(number) for key, number in pairs), (_SEED,))
 
     def _locate(self, cell: int) -> tuple[tuple[int, ...], list[int]]:
         pairs = list(zip(self._keys, digits(cell, self._sizes), strict=True))
-        return tuple(number for key, number in pairs if key.option), [number for key, number in pairs if not key.option]
+        group = tuple(number for key, number in pairs if key.option)
+        return group, [0 if key.option else number for key, number in pairs if not key.chooses(number)]
 
     def _parts(self, group: Any) -> tuple[Sequence[str], Sequence[SweptKey], str]:
-        options = [key for key in self._keys if key.option]
-        texts = [key.override(number) for key, number in zip(options, group, strict=True)]
-        return texts, [key for key in self._keys if not key.option], "config"
+        numbers = iter(group)
+        keys = [key.only(next(numbers)) if key.option else key for key in self._keys]
+        return [key.override(0) for key in keys if key.option], [key for key in keys if not key.option], "config"
 
 
 @dataclass(frozen=True)
@@ -250,7 +257,7 @@ class Listed(Plan):
         self._places: list[tuple[Hashable, int]] = []
         for item in self._items:
             taken = [text for text in shared if item.root == "config" or text.startswith("outputs=")]
-            keys = {read[text].start: read[text] for text in (*item.overrides, *taken)}.values()
+            keys = merge([read[text] for text in (*item.overrides, *taken)])
             options, values = [[key for key in keys if key.option is which] for which in (True, False)]
             group = item.root, tuple(key.override(0) for key in options), tuple(key.start for key in values)
             together = self._cells.setdefault(group, [])

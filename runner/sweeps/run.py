@@ -6,22 +6,26 @@ import os
 import shutil
 import sys
 import time
-from collections.abc import Generator, Iterator, Mapping, Sequence
+from collections import Counter
+from collections.abc import Generator, Iterator, Sequence
 from dataclasses import dataclass, field, replace
 from pathlib import Path
-from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
-from omegaconf import DictConfig
 
 from runner import store
 from runner.base import progress
 from runner.base.errors import ConfigError, StoreError
+from runner.base.sanitize import one_line
 from runner.config.compose.composer import Composer
+from runner.config.compose.given_keys import given_keys
+from runner.config.composed import CALIBRATION
+from runner.config.dependent_keys import depends, idle_keys
 from runner.config.limits import SweepConfig, check_cpu_time, check_memory_together
+from runner.config.validation import validate
 from runner.plugins.discovery import has_users_parts, in_use
-from runner.store.atomic import remove_leftovers
+from runner.store.atomic import refuse_links, remove_leftovers
 from runner.store.finished import FINER
 from runner.store.kinds import note
 from runner.store.names import Names
@@ -32,13 +36,15 @@ from runner.sweeps.engine import in_process, local_client, on_cluster, remote_cl
 from runner.sweeps.estimate import START_UP, Estimate, Pace, estimate
 from runner.sweeps.outcomes import Ends
 from runner.sweeps.part import Part, own_part, share_sweep
-from runner.sweeps.plan import Grid, Plan
+from runner.sweeps.plan import Plan
 from runner.sweeps.queue import Queue
+from runner.sweeps.typed import plan_typed
 from runner.sweeps.work import Report, find_calibrated
 from runner.sweeps.writer import Rules, TraceKeeping, one_in
 
 _DAMAGE_SHOWN = 10
-_SCRATCH = "scratch-"
+_LOOKED_AT = 100  # cells
+_SCRATCH = "scratch-"  # start of the names of folders for temporary files of a command
 _ALL_TRACES_UP_TO = 3000  # runs; with more, sweep.trace=auto is sample
 
 
@@ -86,24 +92,34 @@ class Ended:
     part: str = ""
 
 
-def sweep_typed(
-    arguments: Sequence[str], sweeper: DictConfig | Mapping[str, Any], source: Composer, command: str
-) -> Ended:
+def sweep_typed(arguments: Sequence[str], of_sweeper: Sequence[str], source: Composer, command: str) -> Ended:
     """Execute the missing runs of a command line.
 
     Args:
         arguments: Overrides as typed, without those of Hydra itself.
-        sweeper: Values of hydra.sweeper: workers, address, and params, the values by key from a file. Values on the
-            command line replace those of params.
+        of_sweeper: Overrides of hydra.sweeper: workers, address and params.
         source: Composer of the configs.
         command: The command line, stored with the sweep.
     """
-    params = [f"{key}={value}" for key, value in (sweeper["params"] or {}).items()]
-    plan = Grid([*params, *arguments], source)
+    plan, sweeper = plan_typed(arguments, source, of_sweeper)
     if len(plan) == 1:
         text = "nothing is swept, and a single run is made: no key has several values, as seed=0,1 has"
         print(f"runner: {text}", file=sys.stderr)
-    return run_sweep(plan, Engine(sweeper["workers"], sweeper["address"]), command)
+    ended = run_sweep(plan, Engine(sweeper.workers, sweeper.address), command)
+    for line in find_idle_keys(plan):
+        print(one_line(f"runner: warning: {line}"), file=sys.stderr)
+    return ended
+
+
+def find_idle_keys(plan: Plan) -> list[str]:
+    """Return a line for each key without effect in the cells of a plan; at most 100 are evaluated."""
+    first = plan.composed(0)
+    if first.root == CALIBRATION or not any(map(depends, given_keys(first))):
+        return []
+    cells = range(0, len(plan), -(-len(plan) // _LOOKED_AT))
+    counts = Counter(line for cell in cells for line in idle_keys(validate(plan.composed(cell))))
+    of = f"{len(cells)} cells" if len(cells) == len(plan) else f"{len(cells)} evaluated cells"
+    return [line if count == len(cells) else f"{line} ({count} of {of})" for line, count in counts.items()]
 
 
 def run_sweep(plan: Plan, engine: Engine, command: str, accept_cut_short: bool = True) -> Ended:
@@ -120,7 +136,7 @@ def run_sweep(plan: Plan, engine: Engine, command: str, accept_cut_short: bool =
         StoreError: if a result cannot be written, or a worker fails.
         RunnerError: if the Dask scheduler does not answer.
     """
-    whole, plan = plan, own_part(plan)
+    plan = own_part(plan)
     checked = check(plan)
     names, outputs = checked.names, checked.outputs
     progress.begin("looking for stored runs")
@@ -128,7 +144,8 @@ def run_sweep(plan: Plan, engine: Engine, command: str, accept_cut_short: bool =
     folder = share_sweep(plan, checked, command) if isinstance(plan, Part) else _write_sweep(plan, checked, command)
     with at_work(folder) as name:
         note(folder)
-        rules = replace(make_rules(checked.first.sweep, folder, len(whole), name), accept_cut_short=accept_cut_short)
+        rules = make_rules(checked.first.sweep, folder, len(plan.whole), name)
+        rules = replace(rules, accept_cut_short=accept_cut_short)
         ends, stored = make_missing(plan, checked, rules, engine)
     failed = [(cell, ends[names[cell]]) for cell in ends.failed.tolist()]
     failures = [(plan.overrides(cell), end.failure, rules.details(end.name)) for cell, end in failed]
@@ -144,7 +161,7 @@ def make_missing(plan: Plan, checked: Checked, rules: Rules, engine: Engine) -> 
         StoreError: if a result cannot be written, or a worker fails.
     """
     names = checked.names
-    ends = _find_stored(checked, rules)
+    ends = find_stored(checked, rules)
     stored = len(ends)
     left = ends.left[np.argsort(-checked.costs[ends.left], kind="stable")]
     queue = Queue(plan.alike, names, checked.costs, left, rules)
@@ -174,6 +191,7 @@ def _write_sweep(plan: Plan, checked: Checked, command: str) -> Path:
 def make_rules(settings: SweepConfig, folder: Path, runs: int, command: str) -> Rules:
     """Return the rules for a number of runs of a sweep in a folder; `command` is the name of at_work."""
     automatic: TraceKeeping = "all" if runs <= _ALL_TRACES_UP_TO else "sample"
+    refuse_links(folder.parent.parent, folder / "logs")
     folder = folder.resolve()
     return Rules(
         plugins=in_use(),
@@ -187,7 +205,7 @@ def make_rules(settings: SweepConfig, folder: Path, runs: int, command: str) -> 
     )
 
 
-def _find_stored(checked: Checked, rules: Rules) -> Ends:
+def find_stored(checked: Checked, rules: Rules) -> Ends:
     """Return the outcomes of the jobs that count as done; a run that must keep its trace counts only with its trace."""
     finished = store.Finished(rules.outputs)
     ends = Ends(checked.names)
@@ -273,20 +291,27 @@ def _workers(queue: Queue, jobs: int, engine: Engine, expected: Estimate) -> Ite
             _tell(expected.in_words(processes, processes))
             yield reports
     elif seconds := _seconds_in_process(queue.rules, min(engine.workers, jobs), expected):
-        _tell(expected.in_words(1, 1))
+        _tell(duration_text(queue.rules, jobs, engine, expected))
         with contextlib.closing(_begun_in_process(queue, engine.workers, seconds)) as reports:
             yield reports
     else:
+        _tell(duration_text(queue.rules, jobs, engine, expected))
         workers = min(engine.workers, jobs)
-        together = min(workers, os.cpu_count() or 1)
-        start = START_UP * workers / together
-        _tell(expected.in_words(workers, together, start))
         progress.begin("starting processes")
         with (
             local_client(workers, _scratch(queue.rules)) as client,
             contextlib.closing(on_cluster(queue, client)) as reports,
         ):
             yield reports
+
+
+def duration_text(rules: Rules, jobs: int, engine: Engine, expected: Estimate) -> str:
+    """Return the expected duration of jobs on this machine in words; one process has all jobs of a short sweep."""
+    workers = min(engine.workers, jobs)
+    if _seconds_in_process(rules, workers, expected):
+        return expected.in_words(1, 1)
+    together = min(workers, os.cpu_count() or 1)
+    return expected.in_words(workers, together, START_UP * workers / together)
 
 
 def _seconds_in_process(rules: Rules, workers: int, expected: Estimate) -> float:

@@ -2,10 +2,12 @@
 
 import contextlib
 import math
-from collections.abc import Sequence
+from collections import Counter
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
+from runner.base.machine import Machine
 from runner.store.finished import Finished
 from runner.store.seal import DamagedError, read_json
 from runner.store.sweep import Sweep
@@ -27,6 +29,7 @@ class Status:
         at_work: Commands that work on the sweep.
         seconds: Remaining time at the last recorded pace of the commands at work, in s; None if no pace is recorded.
         damage: Messages on damaged files, one for each file.
+        machines: Number of stored runs of each machine.
     """
 
     done: int
@@ -36,6 +39,7 @@ class Status:
     at_work: Sequence[Command]
     seconds: float | None
     damage: Sequence[str]
+    machines: Mapping[Machine, int]
 
 
 def find_status(sweep: Sweep) -> Status:
@@ -61,6 +65,7 @@ def find_status(sweep: Sweep) -> Status:
         at_work=at_work,
         seconds=None if pace is None else pace * left / max(1, len(at_work)),
         damage=finished.damage,
+        machines=Counter(end.machine for end in stored),
     )
 
 

@@ -136,31 +136,41 @@ class Template:
         other = next((number for number, value in enumerate(key.values) if repr(value) != repr(first)), None)
         if other is None:
             return [{}] * len(key.values)
+        types = {int} if isinstance(key.values, range) else _types_in(key.values)
+        if types >= {int, float}:  # a float key has floats in any case
+            return [change(number) for number in range(len(key.values))]
         places = change(other)
-        if all(
-            repr(value) == repr(key.values[other]) and repr(get(self._first, place)) == repr(first)
-            for place, value in places.items()
-        ):
+        pairs = [(get(self._first, place), value) for place, value in places.items()]
+        if all(repr(pair) == repr((first, key.values[other])) for pair in pairs):
             return _Same(list(places), key.values)
+        if types == {int} and all(repr(pair) == repr((float(first), float(key.values[other]))) for pair in pairs):
+            return _Same(list(places), key.values, as_floats=True)
         return [change(number) for number in range(len(key.values))]
 
 
 class _Same(Sequence[Changes]):
     """Changes of a key that sets the same entries for each value; created on demand because it may have a million."""
 
-    def __init__(self, places: Sequence[Place], values: Sequence[Any]) -> None:
-        self._places, self._values = places, values
+    def __init__(self, places: Sequence[Place], values: Sequence[Any], as_floats: bool = False) -> None:
+        self._places, self._values, self._as_floats = places, values, as_floats
 
     def __len__(self) -> int:
         return len(self._values)
 
     def __getitem__(self, number: Any) -> Any:
-        return dict.fromkeys(self._places, self._values[number])
+        value = self._values[number]
+        return dict.fromkeys(self._places, float(value) if self._as_floats else value)
 
 
 def _distinct(changes: Sequence[Changes]) -> Sequence[Changes]:
     """Return changes, without those that are known to affect the same entries as others."""
     return [changes[0]] if isinstance(changes, _Same) else changes
+
+
+def _types_in(values: Sequence[Any]) -> set[type]:
+    """Return the types of values, and of those in nested lists."""
+    types = set(map(type, values))
+    return types.union(*(_types_in(value) for value in values if type(value) is list)) if list in types else types
 
 
 def _is_plain(value: Any) -> bool:

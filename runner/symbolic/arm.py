@@ -7,6 +7,7 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
+from runner.base import portable
 from runner.base.arrays import FloatArray
 from runner.robots.drawn import DrawnModel
 from runner.robots.model import RobotModel
@@ -133,7 +134,7 @@ def _raw_bodies(model: RobotModel) -> Sequence[Body]:
         at_parent = turns[parent].T
         centre = turn.T @ inertia.lever
         about_origin = turn.T @ inertia.inertia @ turn + inertia.mass * (
-            centre @ centre * _AXES - np.outer(centre, centre)
+            portable.dot(centre, centre) * _AXES - np.outer(centre, centre)
         )
         bodies.append(
             Body(
@@ -187,8 +188,7 @@ def _axis_to_z(joint: Any) -> FloatArray:
     for first in range(3):
         if axis[first] == 1.0:
             return np.column_stack([_AXES[(first + 1) % 3], _AXES[(first + 2) % 3], axis])
-    across = np.cross(axis, _AXES[int(np.argmin(np.abs(axis)))])
-    across /= np.linalg.norm(across)
+    across = portable.unit(np.cross(axis, _AXES[int(np.argmin(np.abs(axis)))]))
     return np.column_stack([across, np.cross(axis, across), axis])
 
 

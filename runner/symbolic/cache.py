@@ -14,6 +14,8 @@ from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
 
+from runner.base.bounded_json import decode_json
+
 _LARGEST = 64 * 2**20  # bytes, limit of one file
 _MOST_ANSWERS = 1000
 _ANSWER = "answer-"  # prefix of file names
@@ -65,7 +67,7 @@ def read(key: str) -> tuple[bytes, dict[str, Any]] | None:
             others = status.st_mode & (stat.S_IWGRP | stat.S_IWOTH)
             if status.st_uid != os.getuid() or others or status.st_size > _LARGEST:
                 return None
-            header = json.loads(file.readline(2**16))
+            header = decode_json(file.readline(2**16))
             code = file.read()
         about, digest = header["about"], header["sha256"]
     except (OSError, ValueError, KeyError, TypeError):
@@ -82,9 +84,13 @@ def write(key: str, code: bytes, about: Mapping[str, Any]) -> None:
         return
     header = json.dumps({"about": about, "sha256": _digest(key, code, about)})
     try:
-        with tempfile.NamedTemporaryFile(dir=place, delete=False) as file:
-            file.write(header.encode() + b"\n" + code)
-        Path(file.name).replace(place / key)
+        descriptor, temporary = tempfile.mkstemp(dir=place)
+        try:
+            with open(descriptor, "wb") as file:  # noqa: PTH123 - a descriptor
+                file.write(header.encode() + b"\n" + code)
+            Path(temporary).replace(place / key)
+        finally:
+            Path(temporary).unlink(missing_ok=True)
     except OSError:
         return
 
@@ -92,7 +98,7 @@ def write(key: str, code: bytes, about: Mapping[str, Any]) -> None:
 def read_answer(key: str) -> Any:
     """Return the plain data stored under a key; None if there is none."""
     found = read(f"{_ANSWER}{key}")
-    return None if found is None else json.loads(found[0])
+    return None if found is None else decode_json(found[0])
 
 
 def write_answer(key: str, answer: Any) -> None:

@@ -101,6 +101,36 @@ def guard_trajectory(trajectory: Any, *_: object) -> Any:
     return guarded
 
 
+def guard_joint_motion(motion: Any, shape: tuple[int, ...]) -> Any:
+    """Return a guarded user-supplied joint motion; its start, duration and number of samples are read once.
+
+    Args:
+        motion: The motion; see JointMotion.
+        shape: Shape of joint positions, (nq,).
+
+    Raises:
+        ConfigError: if one of these is invalid.
+    """
+    rule = Method(lambda found, asked, times: checked(found, (len(times), 3, *shape), asked))
+    guarded, problems = Guard("trajectory", sample=rule)(motion), list[str]()
+    try:
+        start, duration, samples = motion.start, motion.duration, motion.samples
+    except Exception as error:
+        raise ConfigError(f"trajectory: {type(motion).__name__}: {describe_fault(error)}") from error
+    if fault := find_fault(start, shape):
+        problems.append(f"its start is {fault}")
+    if fault := find_fault(duration, ()):
+        problems.append(f"its duration is {fault}")
+    elif not duration > 0.0:
+        problems.append(f"its duration is {duration!r}; it must be a time in s, above 0")
+    if not isinstance(samples, int) or samples < 1:
+        problems.append(f"its samples is {samples!r}; it must be a whole number of 1 or more")
+    if problems:
+        raise ConfigError(f"trajectory: {type(motion).__name__}: {problem}" for problem in problems)
+    guarded.start, guarded.duration, guarded.samples = read_only(np.array(start, dtype=float)), duration, samples
+    return guarded
+
+
 class Trajectories(Registry[KindConfig, [FloatArray], Trajectory]):
     """Kinds of trajectories; `build` also takes the tip position at t = 0, shape (3,), in m."""
 
@@ -109,12 +139,14 @@ class Trajectories(Registry[KindConfig, [FloatArray], Trajectory]):
         return read_features(TrajectoryFeatures, self.module(kind))
 
     def joint_motion(self, config: KindConfig, robot: "Robot") -> "JointMotion | None":
-        """Return the joint motion of a built-in kind, or None; see TrajectoryFeatures.
+        """Return the joint motion of a kind, or None; see TrajectoryFeatures.
 
         Raises:
             ConfigError: if the config does not match the robot.
         """
-        return self.features(config.kind).joint_motion(config, robot) if self.is_ours(config.kind) else None
+        motion = self.ask(config, self.features(config.kind).joint_motion, robot)
+        supplied = motion is not None and self.is_user_supplied(config.kind)
+        return guard_joint_motion(motion, robot.home.shape) if supplied else motion
 
 
 TRAJECTORIES = Trajectories(

@@ -7,6 +7,7 @@ import numpy as np
 from numpy.typing import NDArray
 from pydantic import AfterValidator, Field, ValidationInfo
 
+from runner.base import portable
 from runner.base.arrays import FloatArray
 
 _PERPENDICULAR = 1e-6  # largest cosine of an angle that counts as a right angle
@@ -61,16 +62,15 @@ def plane_axes(normal: list[float], direction: list[float]) -> tuple[FloatArray,
     Returns:
         The first vector, and that vector rotated by 90 degrees counter-clockwise about the normal.
     """
-    n = np.array(normal) / np.linalg.norm(normal)
-    first = np.array(direction) - n * (n @ np.array(direction))
-    first /= np.linalg.norm(first)
+    n, along = portable.unit(np.array(normal)), np.array(direction)
+    first = portable.unit(along - n * portable.dot(n, along))
     return first, np.cross(n, first)
 
 
 def distance_to_segment(points: FloatArray, start: FloatArray, end: FloatArray) -> FloatArray:
     """Return the distance of each point to a segment, shapes (..., 3), (3,), (3,) to (...), in m."""
     along = end - start
-    length_squared = float(along @ along)
+    length_squared = float(portable.dot(along, along))
     share = np.zeros(points.shape[:-1])
     if length_squared > 0.0:
         for axis in range(3):

@@ -54,12 +54,16 @@ class SampledCurve:
         share = (times - self._times[place])[:, None] / step
         controls, scale, orders = self._controls[place], np.ones_like(step), []
         for degree in range(_DEGREE, _DEGREE - 3, -1):
-            powers = np.arange(degree + 1)
-            weights = np.array([comb(degree, power) for power in powers.tolist()])
-            weights = weights * share**powers * (1.0 - share) ** (degree - powers)
+            rising, falling = _powers(share, degree), _powers(1.0 - share, degree)
+            weights = np.array([comb(degree, k) for k in range(degree + 1)]) * rising * falling[:, ::-1]
             orders.append(scale * (weights[:, :, None] * controls).sum(axis=1))
             controls, scale = np.diff(controls, axis=1), scale * degree / step
         return np.stack(orders, axis=1)
+
+
+def _powers(base: FloatArray, degree: int) -> FloatArray:
+    """Return the powers 0 to a degree of a column, as products, shapes (T, 1) to (T, degree + 1)."""
+    return np.asarray(np.cumprod(np.hstack([np.ones_like(base), *[base] * degree]), axis=1), dtype=np.float64)
 
 
 def _configuration(value: Any) -> float | list[float]:

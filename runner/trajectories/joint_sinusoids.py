@@ -99,9 +99,9 @@ class JointSinusoids:
         phase = np.outer(times - self.ramp, rate)
         sine, cosine = np.sin(phase), np.cos(phase)
         a, b = self.coefficients[:, :, 0].T, self.coefficients[:, :, 1].T  # (N, nq)
-        f = sine @ a + cosine @ b
-        df = (rate * cosine) @ a - (rate * sine) @ b
-        ddf = -(rate**2 * sine) @ a - (rate**2 * cosine) @ b
+        f = _over_harmonics(sine, a) + _over_harmonics(cosine, b)
+        df = _over_harmonics(rate * cosine, a) - _over_harmonics(rate * sine, b)
+        ddf = -_over_harmonics(rate**2 * sine, a) - _over_harmonics(rate**2 * cosine, b)
         w, dw, ddw = self._window(times)
         return np.stack(
             [self.start + w * f, dw * f + w * df, ddw * f + 2.0 * dw * df + w * ddf],
@@ -143,6 +143,14 @@ def joint_motion(config: JointSinusoidsConfig, robot: Robot) -> JointMotion:
         config.ramp,
         config.duration,
     )
+
+
+def _over_harmonics(waves: FloatArray, coefficients: FloatArray) -> FloatArray:
+    """Return the sums over the harmonics, shapes (T, N) and (N, nq) to (T, nq), in a fixed order; BLAS has none."""
+    total = np.zeros((len(waves), coefficients.shape[1]))
+    for wave, coefficient in zip(waves.T, coefficients, strict=True):
+        total += wave[:, None] * coefficient
+    return total
 
 
 def _draw(amplitude: FloatArray, harmonics: int, generator: np.random.Generator) -> FloatArray:

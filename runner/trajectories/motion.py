@@ -19,7 +19,7 @@ def quintic_blend(u: FloatArray) -> tuple[FloatArray, FloatArray, FloatArray]:
     """
     u = np.clip(u, 0.0, 1.0)
     return (
-        u**3 * (10.0 + u * (-15.0 + 6.0 * u)),
+        u * u * u * (10.0 + u * (-15.0 + 6.0 * u)),
         30.0 * u**2 * (1.0 - u) ** 2,
         60.0 * u * (1.0 - u) * (1.0 - 2.0 * u),
     )

@@ -3,7 +3,7 @@
 from collections.abc import Sequence
 from dataclasses import dataclass
 from itertools import product
-from math import ceil, prod
+from math import ceil, exp, pi, prod, sqrt
 from typing import TYPE_CHECKING, Literal, cast
 
 import numpy as np
@@ -65,12 +65,12 @@ def zero_vibration(kind: ShaperKind, frequency: float, damping_ratio: float) -> 
         frequency: Undamped frequency of the mode, in Hz.
         damping_ratio: Damping ratio of the mode, below 1.
     """
-    root = np.sqrt(1.0 - damping_ratio**2)
-    half, k = 0.5 / (frequency * root), np.exp(-damping_ratio * np.pi / root)
+    root = sqrt(1.0 - damping_ratio**2)
+    half, k = 0.5 / (frequency * root), exp(-damping_ratio * pi / root)
     once = Impulses(np.array([0.0, half]), np.array([1.0, k]) / (1.0 + k))
     if kind == "zv":
         return once
-    return Impulses(half * np.arange(3), np.array([1.0, 2.0 * k, k**2]) / (1.0 + k) ** 2)
+    return Impulses(half * np.arange(3.0), np.array([1.0, 2.0 * k, k**2]) / (1.0 + k) ** 2)
 
 
 def in_turn(sequences: Sequence[Impulses]) -> Impulses:

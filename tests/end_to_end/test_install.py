@@ -178,16 +178,16 @@ def test_another_version_stays_unless_one_is_asked_for(install, checkout, comman
 
 @pytest.fixture
 def elsewhere(install, tmp_path, monkeypatch):
-    """A machine with no Python but the running one, which calls itself 3.14, and those that a test writes."""
+    """A machine with no Python but the running one, which calls itself 3.15, and those that a test writes."""
     (tmp_path / "bin").mkdir()
     monkeypatch.setenv("PATH", str(tmp_path / "bin"))
     monkeypatch.setenv("PYENV_ROOT", str(tmp_path / "pyenv"))
-    monkeypatch.setattr(install.sys, "version_info", (3, 14, 0))
+    monkeypatch.setattr(install.sys, "version_info", (3, 15, 0))
     return tmp_path
 
 
 def test_a_new_venv_gets_python_3_11_where_there_is_one(install, elsewhere):
-    for version in ("3.13", "3.12"):
+    for version in ("3.14", "3.13", "3.12"):
         write_python(elsewhere / "bin" / f"python{version}", version.replace(".", " "))
     found = write_python(elsewhere / "bin" / "python3.11", "3 11")
     assert install.choose() == ((3, 11), found)
@@ -203,17 +203,18 @@ def test_a_shim_without_its_python_is_none_and_pyenv_s_newest_is_taken(install, 
 
 
 def test_without_3_11_it_gets_the_newest_supported_and_says_what_is_left_out(install, elsewhere):
-    write_python(elsewhere / "bin" / "python3.12", "3 12")
-    found = write_python(elsewhere / "bin" / "python3.13", "3 13")
-    assert install.choose() == ((3, 13), found)
-    assert install.describe((3, 13), found, True) == (
-        f"Python 3.13 ({found}), as no Python 3.11 was found: PyBullet has no wheel for it and is left out, so that "
+    for version in ("3.12", "3.13"):
+        write_python(elsewhere / "bin" / f"python{version}", version.replace(".", " "))
+    found = write_python(elsewhere / "bin" / "python3.14", "3 14")
+    assert install.choose() == ((3, 14), found)
+    assert install.describe((3, 14), found, True) == (
+        f"Python 3.14 ({found}), as no Python 3.11 was found: PyBullet has no wheel for it and is left out, so that "
         "plant=mujoco is the default"
     )
 
 
 def test_without_any_of_them_it_gets_the_running_one(install, elsewhere):
-    assert install.choose() == ((3, 14), sys.executable)
+    assert install.choose() == ((3, 15), sys.executable)
 
 
 def test_one_that_is_asked_for_is_named_so(install):
@@ -224,13 +225,27 @@ def test_one_that_is_asked_for_is_named_so(install):
     )
 
 
-def test_too_old_a_python_is_told_in_a_line(install, capsys, monkeypatch):
+@pytest.mark.parametrize(
+    ("version", "found"), [((3, 10), "3.10"), ((3, 15), "3.15, for which pin (Pinocchio) has no wheel")]
+)
+def test_a_python_that_is_too_old_or_too_new_is_told_in_a_line(install, version, found):
     with pytest.raises(install.InstallError) as raised:
-        install.require((3, 10), "/usr/bin/python3")
+        install.require(version, "/usr/bin/python3")
     assert str(raised.value) == (
-        "Python 3.11 or newer is needed, and /usr/bin/python3 is 3.10; name another one, as in make install "
+        f"Python 3.11 to 3.14 is needed, and /usr/bin/python3 is {found}; name another one, as in make install "
         "PYTHON=python3.11"
     )
+
+
+def test_the_pythons_are_those_of_the_package_the_readme_and_ci(install):
+    for version in install.SUPPORTED:
+        install.require(version, "python")
+    named = [f"3.{minor}" for _, minor in sorted(install.SUPPORTED)]
+    project = tomllib.loads((ROOT / "pyproject.toml").read_text())["project"]
+    classifiers = [text.rpartition(" ")[2] for text in project["classifiers"] if ":: 3." in text]
+    jobs = re.search(r"matrix: {python: \[(.*)\]}", (ROOT / ".github/workflows/ci.yml").read_text()).group(1)
+    assert classifiers == re.findall(r'"(.*?)"', jobs) == named
+    assert f"Python {named[0]} to {named[-1]}" in (ROOT / "README.md").read_text()
 
 
 @pytest.mark.parametrize(

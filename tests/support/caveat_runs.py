@@ -8,18 +8,20 @@ from runner.metrics.caveats.monitor import Watch
 from runner.metrics.caveats.setting import Signals, setting_of
 
 
-def signals(q=None, tau=None, tip=None, desired=None, limits=(10.0, 10.0, 10.0)):
+def signals(q=None, tau=None, tip=None, desired=None, limits=(10.0, 10.0, 10.0), dq=None):
     """Signals of a run of three joints, at rest where nothing is said."""
-    rows = next((len(given) + extra for given, extra in ((q, 0), (tau, 1), (tip, 0)) if given is not None), 101)
+    rows = next(
+        (len(given) + extra for given, extra in ((q, 0), (tau, 1), (tip, 0), (dq, 0)) if given is not None), 101
+    )
     q, tau = np.zeros((rows, 3)) if q is None else q, np.zeros((rows - 1, 3)) if tau is None else tau
-    tip = np.zeros((rows, 3)) if tip is None else tip
+    tip, dq = np.zeros((rows, 3)) if tip is None else tip, np.zeros((rows, 3)) if dq is None else dq
     saturation = (np.abs(tau) >= np.array(limits)).mean(axis=0)
-    return Signals(q, tau, tip, tip if desired is None else desired, saturation, np.array(limits))
+    return Signals(q, dq, tau, tip, tip if desired is None else desired, saturation, np.array(limits))
 
 
 def stacked(*runs):
     """Several runs as one, with an axis in front."""
-    names = ("q", "tau", "tip", "desired", "saturation", "limits")
+    names = ("q", "dq", "tau", "tip", "desired", "saturation", "limits")
     return Signals(*(np.array([getattr(run, name) for run in runs]) for name in names))
 
 

@@ -9,7 +9,6 @@ from runner.plants.rk4 import Rk4
 ENGINES = {
     "bullet": "plant=bullet",
     "mujoco": "plant=mujoco",
-    "mujoco implicitfast": "plant=mujoco plant.integrator=implicitfast",
     "mujoco rk4": "plant=mujoco plant.integrator=rk4",
     "rk4": "plant=rk4",
     "compiled rk4": "plant=rk4",

@@ -1,6 +1,7 @@
 """What chapters, reports and drawings say, line by line, as it is kept in tests/recorded.
 
-A line is a field with its value: of an array its shape and some of its values, of a drawing its paths.
+A line is a field with its value: of an array its shape and some of its values, of a drawing its paths. Nothing is kept
+that another processor changes: a number below 1e-8 is 0, and digits that rounding makes are #; see `lines`.
 """
 
 import lzma
@@ -18,12 +19,14 @@ import numpy as np
 from runner.reporting.document import Provenance
 
 _NUMBER = re.compile(r"(?<![\w.])-?\d+(?:\.\d+)?(?:e[+-]?\d+)?")
+_DIGITS = re.compile(r"(?<![\w#.-])(?:-?\d+(?:\.\d+)?(?:e[+-]?\d+|·10[⁻⁰¹²³⁴⁵⁶⁷⁸⁹]+)?|-?inf|nan|None)(?!\w|\.\d)")
 _POWERS = str.maketrans("⁻⁰¹²³⁴⁵⁶⁷⁸⁹", "-0123456789")
 _SAME, _ZERO = 0.011, 1e-8  # so that a count is the same, and what rounding leaves
 _HREF = "{http://www.w3.org/1999/xlink}href"
 _HEAD = "=== "
 _HASH = re.compile(r"\b(?:[0-9a-f]{24}|(?=\d*[a-f])[0-9a-f]{8})\b")
 _OF_TODAY = ("date", "commit")
+_PRINTED = re.compile(r"(less than )?(-?\d+(?:\.\d+)?)·10([⁻⁰¹²³⁴⁵⁶⁷⁸⁹]+)")
 
 
 def read(file: Path) -> dict[str, list[str]]:
@@ -45,9 +48,34 @@ def changes(was: Sequence[str], now: Sequence[str]) -> list[str]:
     return [line for line in ndiff(was, now) if line[0] in "-+"]
 
 
-def lines(what: Any) -> list[str]:
-    """Return the content of a section, a document or a drawing."""
-    return [*_lines("is", what, 0)]
+def lines(what: Any, of_rounding: Sequence[str] = ()) -> list[str]:
+    """Return the content of a section, a document or a drawing.
+
+    Args:
+        what: The section, document or drawing.
+        of_rounding: Patterns of lines whose digits are made of rounding errors, such as those of a singular matrix or
+            of a run that diverged. Their numbers are #, and those of all lines below; a caption or a title stands for
+            everything that it describes.
+    """
+    found = [*_lines("is", what, 0)]
+    for i, line in enumerate(found):
+        if any(re.search(pattern, line) for pattern in of_rounding):
+            for k in _described(found, i):
+                found[k] = _DIGITS.sub("#", found[k])
+    return found
+
+
+def _described(found: Sequence[str], i: int) -> range:
+    """Return the indices of the lines that a line stands for."""
+    first = i
+    if re.match(r" *(caption|title):", found[i]):
+        first = next(k for k in range(i, -1, -1) if _depth(found[k]) < _depth(found[i]))
+    last = next((k for k in range(first + 1, len(found)) if _depth(found[k]) <= _depth(found[first])), len(found))
+    return range(first, last)
+
+
+def _depth(line: str) -> int:
+    return len(line) - len(line.lstrip(" "))
 
 
 def _lines(name: str, value: Any, depth: int) -> Iterator[str]:
@@ -56,7 +84,7 @@ def _lines(name: str, value: Any, depth: int) -> Iterator[str]:
         case str() if value.lstrip().startswith("<"):
             yield from (f"{head} {path}" for path in _paths(value))
         case float() | np.floating():
-            yield f"{head} {value:.4g}"
+            yield f"{head} {_digits(value)}"
         case np.ndarray():
             yield f"{head} {value.shape} {_some(value.ravel().astype(float))}"
         case Mapping():
@@ -74,7 +102,8 @@ def _lines(name: str, value: Any, depth: int) -> Iterator[str]:
             for field in (each for each in fields(value) if each.name not in _OF_TODAY):
                 yield from _lines(field.name, getattr(value, field.name), below)
         case _:
-            yield _HASH.sub("...", f"{head} {value}".replace("\n", " "))
+            text = _PRINTED.sub(_printed, str(value)).replace("0 (rounding)", "0")
+            yield _HASH.sub("...", f"{head} {text}".replace("\n", " "))
 
 
 def _paths(svg: str) -> Iterator[str]:
@@ -96,7 +125,17 @@ def _paths(svg: str) -> Iterator[str]:
 
 def _some(values: np.ndarray[Any, Any]) -> str:
     some = values if values.size <= 8 else [*values[:: max(1, values.size // 8)], values.min(), values.max()]
-    return " ".join(f"{each:.4g}" for each in some)
+    return " ".join(map(_digits, some))
+
+
+def _digits(value: float) -> str:
+    return "0" if abs(value) <= _ZERO else f"{value:.4g}"
+
+
+def _printed(number: re.Match[str]) -> str:
+    less, digits, power = number.groups()
+    bound = digits == "1" and not less  # a condition's, such as 1·10⁻⁹
+    return "0" if not bound and abs(float(f"{digits}e{power.translate(_POWERS)}")) <= _ZERO else number[0]
 
 
 def _agree(was: str, now: str) -> bool:

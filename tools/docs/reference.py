@@ -107,10 +107,10 @@ def _keys() -> Iterator[str]:
     one, stage = _rows("robot", OneArmConfig, defaults), _rows("robot", StageConfig, {**defaults, "mount": None})
     yield "A robot of several arms has these keys in `robot.stages.NAME` of each.\n\n"
     yield _merged({"one arm": [*one], "several arms": [*stage]})
-    kinds = {group: known for group, known in GROUPS.items() if isinstance(known, Kinds) and known.default is None}
+    kinds = {group: known for group, known in GROUPS.items() if isinstance(known, Kinds) and len(_built_in(known)) > 1}
     for group, registry in {**kinds, "calibration": CALIBRATIONS}.items():
         yield f"### {group}\n\n" + _options(group)
-        rows = {kind: [*_kind_rows(group, kind, registry)] for kind in registry.names() if registry.is_ours(kind)}
+        rows = {kind: [*_kind_rows(group, kind, registry)] for kind in _built_in(registry)}
         yield "Keys by `kind`:\n\n" + "".join(f"- `{kind}`: {_keys_of(own)}\n" for kind, own in rows.items()) + "\n"
         yield _merged(rows)
         if group == "controller":
@@ -127,6 +127,10 @@ def _keys() -> Iterator[str]:
     yield "### spec\n\n" + _options("spec")
     yield "[Bounds](how_sure.md) on metrics, by the metric's name.\n\n"
     yield _table("spec.metrics.NAME", Bound, {name: field.default for name, field in Bound.model_fields.items()})
+
+
+def _built_in(registry: Kinds) -> list[str]:
+    return [kind for kind in registry.names() if not registry.is_user_supplied(kind)]
 
 
 def _sweeper() -> Iterator[str]:

@@ -174,7 +174,7 @@ MUTANTS = [
         "plants/friction_law.py",
         "physics/plants/test_friction_law.py",
         ("a static level that moving joints have", "np.where(held, 1.0, self._weight(np.abs(v)))", "1.0"),
-        ("a sigmoid that drives a joint", "share / (1.0 + odds * np.exp(-y))", "share / (1.0 - odds * np.exp(-y))"),
+        ("a sigmoid that drives a joint", "1.0 + odds * portable.exp(-y)", "1.0 - odds * portable.exp(-y)"),
     ),
     *_of(
         "plants/servo.py",

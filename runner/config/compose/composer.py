@@ -27,7 +27,7 @@ from runner.base.sanitize import quoted
 from runner.config.compose.composition_errors import COMPOSITION_ERRORS, explain
 from runner.config.compose.files import groups, state_of, user_overrides
 from runner.config.compose.overrides import force, prepare
-from runner.config.compose.sources import checked_sources
+from runner.config.compose.sources import VERSION_BASE, checked_sources
 from runner.plugins.discovery import in_use
 
 _KEPT = 512  # combinations of options, about 30 kB each
@@ -56,7 +56,7 @@ class Composer:
     def hydra(self) -> ConfigLoader:
         """Hydra's own loader, which reads files as checked_sources does."""
         folder = str(conf_dir())
-        with checked_sources(self.config_dirs), initialize_config_dir(folder, version_base="1.3", job_name="runner"):
+        with checked_sources(self.config_dirs), initialize_config_dir(folder, job_name="runner", **VERSION_BASE):
             return GlobalHydra.instance().config_loader()
 
     def load(self, overrides: Sequence[str], root: str = "", mode: RunMode = RunMode.RUN) -> DictConfig:

@@ -12,11 +12,13 @@ from runner.base.bounded_yaml import explain_yaml
 from runner.base.errors import ConfigError, nearest
 from runner.base.former_names import explain_value
 from runner.base.sanitize import VALUE, one_line, quoted
-from runner.config.compose.files import group_options
+from runner.config.compose.files import group_options, outside_error
 from runner.config.compose.overrides import explain_parser
 
-_AMBIGUOUS = re.compile(r"Ambiguous value for argument '(.*)'$", re.M)
+_AMBIGUOUS = re.compile(r"(?:Ambiguous value for argument|Sweep parameters) '(.*)'(?:$| requires)", re.M)
+_OF_HYDRA_1_4 = "Error when parsing index: "  # its first line repeats the override
 _LACKING = re.compile(r"Interpolation key '(.*)' not found")
+_OUTSIDE = re.compile(r".*Parent traversal .* \('(.*)'\)")  # of Hydra 1.4
 _NO_GROUP = re.compile(r".* trying to access (\S+): node `(\S+)` is not a container")
 # Exceptions of Hydra for a config that it cannot compose. ValueError and OSError: a file that is not text, or not a
 # mapping. RecursionError: OmegaConf, for a value that refers to itself.
@@ -38,9 +40,10 @@ def explain(error: Exception, config_dirs: Sequence[Path] = ()) -> ConfigError:
             return ConfigError(f"{group}: no '{option}'{nearest(option, known)}; known: {', '.join(known)}")
     if isinstance(error, OverrideParseException):
         found = one_line(f"'{error.override}'", VALUE)
-        return ConfigError(
-            f"{found} is not a valid override: {one_line(explain_parser(str(error).splitlines()[0]), VALUE)}"
-        )
+        text = next(line for line in str(error).splitlines() if not line.startswith(_OF_HYDRA_1_4))
+        return ConfigError(f"{found} is not a valid override: {one_line(explain_parser(text), VALUE)}")
+    if outside := _OUTSIDE.match(str(error)):
+        return outside_error(outside[1])
     missing = _LACKING.match(str(error))
     if isinstance(error, InterpolationKeyError) and error.full_key and missing is not None:
         group = missing[1].partition(".")[0]

@@ -124,6 +124,12 @@ def option_in(folder: Path, group: str, name: str) -> str:
     return f"{own}/{name}" if named else name
 
 
+def outside_error(name: str) -> ConfigError:
+    """Return the error for the name of a config that leads out of its folder."""
+    named = f"{quoted(name)}: not a config in a folder; a defaults list or an override names it"
+    return ConfigError(f"{named}; allowed: names without '..' and '/' in front")
+
+
 KEYS = ("outputs", "hydra.sweeper.workers", "hydra.sweeper.address")
 SAYS_HOW = re.compile(r"(?:^[+~]*|[@:])(?:_global_\.)?(hydra|outputs)(?![^./@:])")
 _AXES = "hydra.sweeper.params"
@@ -165,7 +171,21 @@ def user_overrides() -> list[str]:
     Raises:
         ConfigError: with file and line, for a file that cannot be read, an unknown key or an invalid value.
     """
-    return [f"{key}={value}" for key, value in _read(settings_path()).items()]
+    given = _read(settings_path())
+    return [outputs_override(value) if key == "outputs" else f"{key}={value}" for key, value in given.items()]
+
+
+def outputs_override(folder: Path | str) -> str:
+    """Return the override that names an outputs folder; it is quoted, because a name may contain any sign.
+
+    Raises:
+        ConfigError: for a name with `${`, which begins a reference.
+    """
+    from hydra.core.override_parser.types import Quote, QuotedString
+
+    if "${" in str(folder):
+        raise ConfigError(f"outputs: '${{' begins a reference ({quoted(str(folder))}). Choose a name without it")
+    return f"outputs={QuotedString(str(folder), Quote.single).with_quotes()}"
 
 
 def outputs_dir() -> Path:

@@ -63,7 +63,8 @@ def _is_renamed(model: type[StrictModel], key: str, location: list[str], item: d
 
 
 def _explain(model: type[StrictModel], location: list[str], item: dict[str, Any]) -> str:
-    kind, found, context = item["type"], item["input"], item.get("ctx", {})
+    kind, context = item["type"], item.get("ctx", {})
+    found = item["input"] if kind.startswith("int_") else _without_zeros(item["input"])
     quantity = next(quantities_in(found), None) if kind in _OF_NUMBERS and location else None
     unit = model.find_unit(location) if quantity is not None else None
     if quantity is not None and unit is not None:
@@ -85,6 +86,15 @@ def _explain(model: type[StrictModel], location: list[str], item: dict[str, Any]
     if wanted == _NUMBERS["int_type"] and isinstance(found, float) and found.is_integer():
         return f"{wanted}; found {quoted(found)}; write {int(found)}"
     return f"{wanted.format(**context) if wanted else item['msg']}; found {quoted(found)}"
+
+
+def _without_zeros(value: Any) -> Any:
+    """Return a value with whole floats as integers, as they are typed; see to_si."""
+    if isinstance(value, list):
+        return [_without_zeros(part) for part in value]
+    if isinstance(value, dict):
+        return {key: _without_zeros(part) for key, part in value.items()}
+    return int(value) if isinstance(value, float) and value.is_integer() else value
 
 
 def _innermost(model: type[StrictModel], location: list[str]) -> type[StrictModel]:

@@ -16,6 +16,7 @@ from functools import lru_cache
 from pathlib import Path
 from typing import Any
 
+import hydra
 from hydra.core.config_search_path import ConfigSearchPath
 from hydra.core.object_type import ObjectType
 from hydra.core.plugins import Plugins
@@ -29,8 +30,7 @@ from runner.base.engines import default_plant
 from runner.base.errors import ConfigError
 from runner.base.limits import ExcessError, read_text
 from runner.base.paths import check_inside, conf_dir, ships
-from runner.base.sanitize import quoted
-from runner.config.compose.files import place_in, refuse_settings, settings_error
+from runner.config.compose.files import outside_error, place_in, refuse_settings, settings_error
 from runner.controllers import CONTROLLERS
 
 
@@ -73,7 +73,10 @@ class FunctionSource(ConfigSource):
         return name.removesuffix(".yaml") if group == CONTROLLERS.group else ""
 
 
+VERSION_BASE: Mapping[str, Any] = {"version_base": "1.3"} if hydra.__version__.startswith("1.3.") else {}
+"""Argument of Hydra's functions for the present defaults; from Hydra 1.4 on they have these without the argument."""
 _SCHEME = "checked"
+_DEFAULT_PLANT = "plant/default.yaml"  # names the plant that is installed
 _USERS = "command-line"  # Hydra's name of where such a folder comes from
 _HEAD = 512  # characters that Hydra searches for the package of a file
 _ENDS = re.compile(r"_global_.?|[./:@]")  # of the parts of a package; a package after `_global_` is absolute
@@ -84,12 +87,10 @@ _folders: ContextVar[Sequence[Path] | None] = ContextVar("folders", default=None
 def checked_sources(config_dirs: Sequence[Path]) -> Iterator[None]:
     """Let Hydra find and read config files only with CheckedSource, in conf/ and in folders of the user.
 
-    In the folder of a study, names of experiments begin with the name of the study; see place_in. Only
-    conf/plant/default.yaml calls a function.
+    In the folder of a study, names of experiments begin with the name of the study; see place_in.
     """
     for plugin in (CheckedSource, CheckedSearchPath, FunctionSource):
         Plugins.instance().register(plugin)
-    OmegaConf.register_new_resolver("default_plant", lambda: f"/plant/{default_plant()}", replace=True)
     before = _folders.set(config_dirs)
     try:
         yield
@@ -137,8 +138,7 @@ class CheckedSource(ConfigSource):
             ConfigError: for a name that leads out of the folder. Hydra asks every source, and its own would read it.
         """
         if config_path.startswith("/") or ".." in config_path.split("/"):
-            named = f"{quoted(config_path)}: not a config in a folder; a defaults list or an override names it"
-            raise ConfigError(f"{named}; allowed: names without '..' and '/' in front")
+            raise outside_error(config_path)
         return self._file(config_path).is_file() and not self._is_hidden(config_path)
 
     def _is_hidden(self, config_path: str) -> bool:
@@ -167,6 +167,8 @@ class CheckedSource(ConfigSource):
         check_inside(path, [Path(self.path)])
         status = path.stat()
         content, package = pickle.loads(_read(path, status.st_mtime_ns, status.st_size))  # noqa: S301 - made by _read
+        if path == conf_dir() / _DEFAULT_PLANT:
+            content["defaults"] = [f"/plant/{default_plant()}@_here_"]
         if not ships(path):
             if self.provider == _USERS and self._has_ours(config_path):  # ambiguous name
                 group, _, option = config_path.rpartition("/")

@@ -3,21 +3,23 @@
 import contextlib
 import re
 from collections.abc import Iterator, Mapping, Sequence
+from functools import lru_cache
 from pathlib import Path
-from typing import Any
+from typing import Annotated, Any, get_args, get_origin
 
 from runner.base.dotted_keys import Place, leaves, put, split_override
 from runner.base.errors import ConfigError
-from runner.schema.model import StrictModel
+from runner.schema.model import LARGEST_WHOLE, StrictModel
 from runner.schema.units import Unit, explain_quantity, read_quantity
 
-_RANGE = re.compile(r"\b(interval|range)\(([^()]*)\)")
+_FUNCTION = re.compile(r"\b(interval|range|choice|sort|shuffle)\(([^()]*)\)")
 
 
 def to_si(resolved: dict[str, object], config_dirs: Sequence[Path] = ()) -> None:
-    """Replace each quantity whose unit fits its key by its number in SI units.
+    """Replace each quantity whose unit fits its key by its number in SI units, and integers of a float key by floats.
 
-    Quantities that do not fit their key remain: validation reports them with all other problems.
+    The values 1 and 1.0 of a float key are then one value, in one run. Quantities that do not fit their key remain:
+    validation reports them with all other problems.
 
     Args:
         resolved: The config as plain data, interpolations resolved; the function changes it.
@@ -25,6 +27,8 @@ def to_si(resolved: dict[str, object], config_dirs: Sequence[Path] = ()) -> None
     """
     of_joints: list[tuple[Place, str, bool]] = []
     for place, text in leaves(resolved):
+        if type(text) is int and abs(text) <= LARGEST_WHOLE and _is_float(resolved, place):
+            put(resolved, place, float(text))
         quantity = read_quantity(text)
         if quantity is None:
             continue
@@ -84,6 +88,32 @@ def _find_unit(place: Sequence[str | int], kind: str | None = None) -> Unit:
     return found.pop() or Unit() if len(found) == 1 else Unit()
 
 
+def _is_float(resolved: Mapping[str, Any], place: Place) -> bool:
+    """Return True if the number at a path in a config is a float, for the kind that the config chooses."""
+    group, *rest = [str(part) for part in place]
+    options = resolved.get(group)
+    kind = options.get("kind") if rest and isinstance(options, Mapping) else None
+    found = [model.find_field(rest or [group]) for model in _models(group if rest else "", rest, kind)]
+    types: list[Any] = [field.annotation for field in found if field is not None]
+    return bool(types) and all(map(_holds_floats, types))
+
+
+@lru_cache(maxsize=1024)
+def _holds_floats(annotation: object) -> bool:
+    """Return True if the numbers in a field of a model are floats, not integers."""
+    types = set(_types(annotation))
+    return float in types and int not in types
+
+
+def _types(annotation: object) -> Iterator[object]:
+    """Yield the types in an annotation, such as float in `list[PositiveFloat] | None`."""
+    inner = get_args(annotation)
+    if not inner:
+        yield annotation
+    for part in inner[:1] if get_origin(annotation) is Annotated else inner:
+        yield from _types(part)
+
+
 def as_numbers(values: Sequence[object], key: str) -> list[float] | None:
     """Return the values of a swept key, some of them quantities and the others numbers, in SI units.
 
@@ -108,7 +138,7 @@ def as_numbers(values: Sequence[object], key: str) -> list[float] | None:
 
 
 def with_numbers(override: str) -> str:
-    """Return an override in which the quantities of ranges, as in interval(5ms,50ms), are numbers in SI units.
+    """Return an override in which the quantities of functions, as in interval(5ms,50ms), are numbers in SI units.
 
     Raises:
         ConfigError: for a quantity whose unit does not fit the key.
@@ -116,21 +146,21 @@ def with_numbers(override: str) -> str:
     key, value = split_override(override)
     place = key.split(".")
 
-    def number(text: str) -> str:
+    def number(text: str, of_numbers: bool) -> str:
         name, equals, given = text.rpartition("=")
-        quantity = read_quantity(given)
-        if quantity is None:
+        quantity, units = read_quantity(given), _find_unit(place).at(place)
+        if quantity is None or not (units or of_numbers):
             return text
-        units = _find_unit(place).at(place)
         found = next((found for unit in units if (found := quantity.in_unit(unit)) is not None), None)
         if found is None:
             raise ConfigError(f"{key}: {explain_quantity(given, units)}")
         return f"{name}{equals}{found!r}"
 
     def numbers(match: re.Match[str]) -> str:
-        return f"{match[1]}({','.join(map(number, match[2].split(',')))})"
+        of_numbers = match[1] in ("interval", "range")  # the others may have names, such as 3m
+        return f"{match[1]}({','.join(number(text, of_numbers) for text in match[2].split(','))})"
 
-    return f"{override.removesuffix(value)}{_RANGE.sub(numbers, value)}" if "(" in value else override
+    return f"{override.removesuffix(value)}{_FUNCTION.sub(numbers, value)}" if "(" in value else override
 
 
 def _models(group: str, rest: Sequence[str], chosen: str | None = None) -> Iterator[type[StrictModel]]:

@@ -5,7 +5,8 @@ from typing import Literal
 import numpy as np
 
 from runner.base.arrays import FloatArray
-from runner.base.lazy_modules import pin
+from runner.base.lazy_modules import eigen, pin
+from runner.base.portable import dot, solve_symmetric
 from runner.controllers.disturbance_observer import momentum_balance
 from runner.controllers.torque_law import PinocchioArm
 from runner.robots.mounting import find_tool, holding_wrench
@@ -151,6 +152,6 @@ class JointTorqueReading(ForceReading):
         p, b = self._arm.momentum(q, dq, self._model.gravity)
         before = p - 0.5 * h * b if self._before is None else self._before  # no disturbance before the first tick
         disturbance, self._before = momentum_balance(p, b, h, before, self._acted)
-        yields = np.linalg.solve(M, np.column_stack([J.T, disturbance]))
-        force = np.linalg.lstsq(J @ yields[:, :-1], J @ yields[:, -1], rcond=None)[0]
+        yields = solve_symmetric(M, np.column_stack([J.T, disturbance]))
+        force = eigen.CompleteOrthogonalDecomposition(J @ yields[:, :-1]).solve(dot(J, yields[:, -1]))
         return np.concatenate([force, np.zeros(3)])

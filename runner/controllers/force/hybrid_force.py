@@ -5,6 +5,7 @@ from typing import Annotated, Literal, NamedTuple
 import numpy as np
 from pydantic import Field, NonNegativeFloat, PositiveFloat
 
+from runner.base import portable
 from runner.base.arrays import FloatArray
 from runner.base.errors import ConfigError
 from runner.controllers.controller import Loop, VelocityGain
@@ -129,7 +130,7 @@ class HybridForce(TipForce[HybridForceParameters]):
         """Return the torques for the present reading; see Controller.torque."""
         self.external_wrench = self._reading.wrench(q, dq)
         state = self.start(q) if self.state is None else self.state
-        self.state = np.array([self.external_wrench[:3] @ self.parameters.normal, state[1]])
+        self.state = np.array([portable.dot(self.external_wrench[:3], self.parameters.normal), state[1]])
         return super().torque(time, q, dq, reference)
 
     def command(
@@ -171,7 +172,7 @@ def build(config: HybridForceConfig, robot: Robot) -> tuple[Loop, ...]:
 
 
 def _unit(normal: list[float]) -> FloatArray:
-    length = float(np.linalg.norm(normal))
+    length = portable.norm(np.array(normal))
     if abs(length - 1.0) > 1e-6:
         raise ConfigError(f"controller.normal: must be a unit vector; found {normal}, of length {length:.7g}")
     return np.array(normal) / length

@@ -71,6 +71,7 @@ class Impedance(TipForce[ImpedanceParameters]):
         return tip.desired, spring + (axes * parameters.damping).dot(axes.T).dot(tip.lag), state
 
 
+TAKES_DRAWN = True
 CONFIG = ImpedanceConfig
 
 

@@ -155,4 +155,5 @@ def _friction(arm: Arm, dq_r: Array, dq_d: Array) -> Array:
 
 CONFIG = AdaptiveConfig
 FOLLOWS_JOINTS = True
+TAKES_DRAWN = True
 build = joint_law_builder(Adaptive)

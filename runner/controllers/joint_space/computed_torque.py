@@ -70,4 +70,5 @@ class ComputedTorque(JointLaw[ComputedTorqueParameters, ComputedTorqueConfig]):
 
 CONFIG = ComputedTorqueConfig
 FOLLOWS_JOINTS = True
+TAKES_DRAWN = True
 build = joint_law_builder(ComputedTorque)

@@ -82,7 +82,7 @@ class IterativeLearning(Controller):
         self._period, self._gain = config.period, config.learning_gain
         rate = 2.0 * np.pi * np.fft.rfftfreq(self._ticks, config.period)
         cutoff = np.inf if config.cutoff is None else config.cutoff * config.natural_frequency
-        self._Q: FloatArray = np.asarray(1.0 / (1.0 + (rate[:, None] / cutoff) ** 4), dtype=np.float64)
+        self._Q: FloatArray = np.asarray(1.0 / (1.0 + ((rate[:, None] / cutoff) ** 2) ** 2), dtype=np.float64)
         self._shape = (self._ticks, model.nq)
         self._limits = model.effort_limits
         self.reset()
@@ -149,4 +149,5 @@ def _count_ticks(config: IterativeLearningConfig) -> int:
 
 CONFIG = IterativeLearningConfig
 FOLLOWS_JOINTS = True
+TAKES_DRAWN = True
 build = joint_law_builder(IterativeLearning)

@@ -71,4 +71,5 @@ class JointPd(JointLaw[JointPdParameters, JointPdConfig]):
 
 CONFIG = JointPdConfig
 FOLLOWS_JOINTS = True
+TAKES_DRAWN = True
 build = joint_law_builder(JointPd)

@@ -58,7 +58,7 @@ class JointPid(JointLaw[JointPidParameters, JointPidConfig]):
         """Return the parameters of the law above; see JointLaw."""
         self._anti_windup, self._state_size = config.anti_windup, model.nq
         gains = second_order(config.natural_frequency, config.damping_ratio)
-        k_i = config.integral_share * config.natural_frequency**3
+        k_i = config.integral_share * config.natural_frequency * gains[0]
         return JointPidParameters(*gains, k_i, inertia, model.effort_limits)
 
     @property
@@ -88,4 +88,5 @@ def _useful(arm: Arm, torque: Scalar, limit: Scalar, step: Scalar) -> Array:
 
 CONFIG = JointPidConfig
 FOLLOWS_JOINTS = True
+TAKES_DRAWN = True
 build = joint_law_builder(JointPid)

@@ -74,4 +74,5 @@ def passive_dynamics(arm: Arm, q: Array, dq: Array, dq_r: Array, ddq_r: Array) -
 
 CONFIG = PassivityConfig
 FOLLOWS_JOINTS = True
+TAKES_DRAWN = True
 build = joint_law_builder(Passivity)

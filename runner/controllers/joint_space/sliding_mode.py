@@ -90,4 +90,5 @@ class SlidingMode(JointLaw[SlidingModeParameters, SlidingModeConfig]):
 
 CONFIG = SlidingModeConfig
 FOLLOWS_JOINTS = True
+TAKES_DRAWN = True
 build = joint_law_builder(SlidingMode)

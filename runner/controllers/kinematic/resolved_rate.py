@@ -6,9 +6,12 @@ import numpy as np
 from pydantic import NonNegativeFloat, PositiveFloat
 
 from runner.base.arrays import FloatArray
-from runner.base.lazy_modules import lapack
+from runner.base.lazy_modules import eigen
+from runner.base.portable import dot, solve_symmetric
 from runner.schema.model import StrictModel
 from runner.schema.units import JointPosition, JointSpeed, PerSecond
+
+_SINGULAR = "the tip's Jacobian is singular"
 
 
 class NullSpaceConfig(StrictModel):
@@ -101,7 +104,7 @@ def log_manipulability_gradient(J: FloatArray, directions: FloatArray) -> FloatA
         dJ = np.concatenate([dJ, upstream * np.cross(angular[first], angular[last])], axis=2)
     dJ = dJ @ directions.T
     task = directions @ J[: directions.shape[1]]
-    inverse = np.linalg.solve(task @ task.T, task)  # (J J^T)^-1 J, the transpose of J^+
+    inverse = solve_symmetric(task @ task.T, task)  # (J J^T)^-1 J, the transpose of J^+
     gradient: FloatArray = np.einsum("ri,kir->k", inverse, dJ)
     return gradient
 
@@ -152,7 +155,7 @@ class ResolvedRate:
             worst = int(np.argmax(beyond))
             free[worst] = False
             dq[worst] = min(max(dq[worst], lower[worst]), upper[worst])
-            left = v - J[:, ~free] @ dq[~free]
+            left = v - dot(J[:, ~free], dq[~free])
             try:
                 dq[free] = self._solve(J[:, free], left, dq0[free], self._mobility[free])
             except np.linalg.LinAlgError:
@@ -164,15 +167,12 @@ class ResolvedRate:
         spread = (self._mobility if mobility is None else mobility)[:, None] * J.T
         A = J.dot(spread)
         if self._damping and self._is_near(A):
-            smallest = max(float(np.linalg.eigvalsh(A)[0]), 0.0)
+            smallest = max(float(eigen.SelfAdjointEigenSolver(A).eigenvalues()[0]), 0.0)
             A.flat[:: len(A) + 1] += max(self._damping**2 - smallest, 0.0)  # the diagonal
-        _, _, solution, singular = lapack.dgesv(A, v - J.dot(dq0))
-        if singular:
-            raise np.linalg.LinAlgError("the tip's Jacobian is singular")
-        return np.asarray(dq0 + spread.dot(solution))
+        return dq0 + dot(spread, solve_symmetric(A, v - dot(J, dq0), _SINGULAR))
 
     def _is_near(self, A: FloatArray) -> bool:
         """Return True if an eigenvalue of A is below damping^2; a Cholesky factorisation shows it faster."""
         above = A.copy()
         above.flat[:: len(A) + 1] -= self._damping**2
-        return bool(lapack.dpotrf(above)[1] != 0)
+        return bool(eigen.LLT(above).info() != eigen.ComputationInfo.Success)

@@ -63,6 +63,7 @@ class MacroMiniConfig(StrictModel):
     singularity_damping: NonNegativeFloat
 
 
+TAKES_DRAWN = True
 CONFIG = MacroMiniConfig
 _AIMS: Mapping[str, Aim] = {
     "one_way": "rest",

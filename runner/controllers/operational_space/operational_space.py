@@ -174,6 +174,7 @@ def tip_law(
     return WholeBody(model, law, home, first_held=0, orientation=orientation)
 
 
+TAKES_DRAWN = True
 CONFIG = OperationalSpaceConfig
 
 

@@ -333,6 +333,7 @@ class WholeBody(TorqueLaw[WholeBodyParameters]):
         return torque if spring is None else torque + spring
 
 
+TAKES_DRAWN = True
 CONFIG = WholeBodyConfig
 
 

@@ -29,7 +29,7 @@ def servo_contact(config: RunConfig, q_start: FloatArray) -> ServoContact | None
     """
     plant, law, wall, timing = config.plant, config.controller, config.environment, config.timing
     servo, sensor = options_of(plant).servo, config.wrist_sensor
-    if not isinstance(wall, WallConfig) or not isinstance(law, CommandsForce) or servo is None:
+    if type(wall) is not WallConfig or not isinstance(law, CommandsForce) or servo is None:
         return None
     if PLANTS.commands(plant.kind) != "torque" or config.commands != "position" or len(config.arm.stages) > 1:
         return None
@@ -65,7 +65,7 @@ def force_contact(config: RunConfig, q_start: FloatArray) -> float | None:
         q_start: Joint positions at the start, shape (nq,), in rad.
     """
     wall, law, loop, timing = config.environment, config.controller, config.loops[-1], config.timing
-    if not isinstance(wall, WallConfig) or not isinstance(law, HybridForceConfig) or law.force_source != "wrist":
+    if type(wall) is not WallConfig or not isinstance(law, HybridForceConfig) or law.force_source != "wrist":
         return None
     if not isinstance(config.wrist_sensor, ForceTorqueConfig):
         return None

@@ -11,14 +11,15 @@ import numpy as np
 from runner.base.arrays import FloatArray
 from runner.base.cache import Memory
 from runner.config.judgement import THRESHOLDS, CaveatsConfig
-from runner.metrics.caveats import plant_error
-from runner.metrics.caveats.plant_error import PlantStep, caveat_of
+from runner.metrics.caveats import plant_error, rounding
+from runner.metrics.caveats.plant_error import PlantStep
 from runner.metrics.caveats.rule import Caveat, Found, TraceRule
 from runner.metrics.caveats.setting import Setting, Signals
 from runner.metrics.caveats.setting_rules import SETTING_RULES
 from runner.metrics.caveats.trace_rules import TRACE_RULES
 from runner.metrics.caveats.versions import rules_digest
 from runner.metrics.plant_error import PlantError
+from runner.metrics.rounding import RoundingGrowth
 
 _KEYS = {rule: key for rule, (key, *_) in THRESHOLDS.items()}
 _values = attrgetter(*(f"{rule}.{key}" for rule, key in _KEYS.items()))
@@ -63,12 +64,15 @@ class Watch:
             if theirs.value > worst.value:
                 worst.value, worst.joint = theirs.value, theirs.joint
 
-    def found(self, error: PlantError | None = None, step: PlantStep | None = None) -> Found:
+    def found(
+        self, error: PlantError | None = None, step: PlantStep | None = None, growth: RoundingGrowth | None = None
+    ) -> Found:
         """Return the caveats; if no repetition succeeded, only those on the config.
 
         Args:
             error: Integration error of the plant, if it was measured.
             step: Integration step of the plant.
+            growth: Growth of rounding errors, if it was measured.
         """
         caveats = [
             Caveat(rule.name, self._told(rule, worst), worst.value)
@@ -77,9 +81,13 @@ class Watch:
         ]
         caveats += _MEMORY.recall(_of_setting, self._setting, self._thresholds)
         if error is not None and step is not None:
-            threshold = self._thresholds[plant_error.NAME][_KEYS[plant_error.NAME]]
-            caveats += filter(None, [caveat_of(error, step, threshold)])
+            caveats += filter(None, [plant_error.caveat_of(error, step, self._threshold(plant_error.NAME))])
+        if growth is not None:
+            caveats += filter(None, [rounding.caveat_of(growth, self._threshold(rounding.NAME))])
         return Found(caveats, rules_digest(), self._thresholds)
+
+    def _threshold(self, rule: str) -> float:
+        return self._thresholds[rule][_KEYS[rule]]
 
     def _note(self, rule: TraceRule, values: FloatArray, sprung: int) -> None:
         """Record the values of a rule, shape (repetitions, n), and the number of repetitions that triggered it."""

@@ -36,6 +36,7 @@ class Setting:
         joint_names: Names of the joints.
         joint_units: Unit of the position of each joint, rad or m.
         position_limits: Lower and upper position limits, shape (2, nq), in rad; infinite without a limit.
+        velocity_limits: Speed limit of each joint, shape (nq,), in rad/s; infinite without a limit.
         torque_limits: Torque limit of each joint at rest, shape (nq,), in N m; infinite without a limit.
         speed_limits_torque: True if a torque limit depends on the speed.
         plant: Kind of the plant.
@@ -43,8 +44,8 @@ class Setting:
         ticks_per_torque: Number of ticks for which the torque of each joint is constant, shape (nq,).
         tracked: True if the tip must follow a path, instead of only reaching a goal.
         complies: True if the controller must comply with the external wrench.
-        noise: Noise of the joint measurement.
-        mismatch: Error of the nominal model of the controllers.
+        noise: Noise of the joint measurement; None for encoders of another kind.
+        mismatch: Factors on the nominal model of the controllers; None for a mismatch of another kind.
         mass: Mass of all moving links, in kg.
         in_place_of: Kind of the default plant if this plant replaces it because it is missing; otherwise None.
         contact: Contact of a servo-driven arm with a wall under an admittance law; None without one.
@@ -60,6 +61,7 @@ class Setting:
     joint_names: Sequence[str]
     joint_units: Sequence[str]
     position_limits: FloatArray
+    velocity_limits: FloatArray
     torque_limits: FloatArray
     speed_limits_torque: bool
     plant: str
@@ -67,8 +69,8 @@ class Setting:
     ticks_per_torque: NDArray[np.intp]
     tracked: bool
     complies: bool
-    noise: "EncoderNoise"
-    mismatch: "MismatchConfig"
+    noise: "EncoderNoise | None"
+    mismatch: "MismatchConfig | None"
     mass: float
     in_place_of: str | None
     contact: "ServoContact | None"
@@ -104,6 +106,7 @@ def setting_of(config: "RunConfig", q_start: FloatArray | None = None) -> Settin
         joint_names=model.joint_names,
         joint_units=units,
         position_limits=position_limits,
+        velocity_limits=model.velocity_limits,
         torque_limits=config.torque_limits.max,
         speed_limits_torque=config.torque_limits.depend_on_speed,
         plant=config.plant.kind,
@@ -171,6 +174,7 @@ class Signals:
 
     Attributes:
         q: Joint positions, shape (..., T, nq), in rad.
+        dq: Joint velocities, shape (..., T, nq), in rad/s.
         tau: Torques applied between the ticks, shape (..., T - 1, nq), in N m.
         tip: Tip positions, shape (..., T, 3), in m.
         desired: Desired tip positions, shape (..., T, 3), in m.
@@ -179,6 +183,7 @@ class Signals:
     """
 
     q: FloatArray
+    dq: FloatArray
     tau: FloatArray
     tip: FloatArray
     desired: FloatArray
@@ -201,6 +206,7 @@ def signals_of(trace: Trace, metrics: Mapping[str, float | FloatArray | None]) -
     tip = trace.tip
     return Signals(
         q=trace.q,
+        dq=trace.dq,
         tau=trace.tau[..., :-1, :],
         tip=tip,
         desired=np.broadcast_to(trace.desired[..., 0, :], tip.shape),

@@ -1,11 +1,15 @@
 """Caveat rules on the config: load, measurements, nominal model, gains, contact, duration, plant and robot file."""
 
 import math
+from typing import TYPE_CHECKING
 
 import numpy as np
 
 from runner.metrics.caveats.rule import SettingRule
 from runner.metrics.caveats.setting import Setting
+
+if TYPE_CHECKING:
+    from runner.robots.mismatch import MismatchConfig
 
 _FACTORS = ("mass", "centre_of_mass", "length", "gravity")
 _OF_LINK = ("mass", "centre_of_mass", "inertia")
@@ -45,7 +49,9 @@ NO_EFFORT_LIMIT = SettingRule("no_effort_limit", _lifted, _tell_lifted)
 def _noise_beside_exact(setting: Setting) -> float | None:
     """Return the largest noise or resolution of a measured joint position, in rad, if velocities are exact."""
     noise = setting.noise
-    if noise.velocity != "exact" or not setting.torques:  # laws that command positions do not use velocities
+    if noise is None or noise.velocity != "exact":
+        return None
+    if not setting.torques:  # laws that command positions do not use velocities
         return None
     drawn = 0.0 if noise.distribution == "none" else max(noise.position.tolist())
     return float(max(drawn, *noise.resolution.tolist()))
@@ -60,16 +66,16 @@ def _tell_noise(value: float, setting: Setting) -> str:
 
 def _fixed_error(setting: Setting) -> float | None:
     """Return the largest relative error of the nominal model, if it is the same in several repetitions."""
-    if setting.mismatch.varies or setting.repetitions == 1:
+    mismatch = setting.mismatch
+    if mismatch is None or mismatch.varies or setting.repetitions == 1:
         return None
-    return max(
-        abs(setting.mismatch.payload) / setting.mass, *(abs(value - 1.0) for value in _factors(setting).values())
-    )
+    return max(abs(mismatch.payload) / setting.mass, *(abs(value - 1.0) for value in _factors(mismatch).values()))
 
 
 def _tell_fixed(value: float, setting: Setting) -> str:
-    wrong = [name for name, value in _factors(setting).items() if value != 1.0]
-    wrong += ["payload"] if setting.mismatch.payload else []
+    mismatch = setting.mismatch
+    wrong = [] if mismatch is None else [name for name, value in _factors(mismatch).items() if value != 1.0]
+    wrong += ["payload"] if mismatch is not None and mismatch.payload else []
     return (
         f"the {setting.repetitions} repetitions vary noise alone: mismatch.{', mismatch.'.join(wrong)} "
         f"{'is' if len(wrong) == 1 else 'are'} the same in all (mismatch.spread: 0), so that their intervals say "
@@ -77,9 +83,8 @@ def _tell_fixed(value: float, setting: Setting) -> str:
     )
 
 
-def _factors(setting: Setting) -> dict[str, float]:
+def _factors(mismatch: "MismatchConfig") -> dict[str, float]:
     """Return the fixed factors of the nominal model, by their keys in `mismatch`."""
-    mismatch = setting.mismatch
     of_links = {f"link.{name}.{term}": getattr(link, term) for name, link in mismatch.link.items() for term in _OF_LINK}
     return {name: getattr(mismatch, name) for name in _FACTORS} | of_links
 

@@ -18,7 +18,9 @@ from runner.controllers.joint_space.adaptive import Adaptive, AdaptiveConfig
 from runner.controllers.joint_space.computed_torque import ComputedTorqueConfig
 from runner.controllers.joint_space.iterative_learning import IterativeLearningConfig
 from runner.controllers.joint_space.joint_law import JointLawConfig
+from runner.controllers.joint_space.joint_pd import JointPdConfig
 from runner.controllers.joint_space.joint_pid import JointPidConfig
+from runner.controllers.joint_space.motor_pd import MotorPdConfig
 from runner.controllers.joint_space.passivity import PassivityConfig
 from runner.controllers.joint_space.sliding_mode import SlidingModeConfig
 from runner.controllers.kinematic.differential_inverse_kinematics import DifferentialInverseKinematicsConfig
@@ -54,8 +56,11 @@ def slowest_part(run: RunConfig, q_start: FloatArray | None = None) -> TimeConst
         run: The checked config.
         q_start: Joint positions at the start, shape (nq,), in rad; None is the home configuration.
     """
-    ours = CONTROLLERS.is_ours(run.controller.kind)  # a user-supplied law can have a built-in config
-    parts = dict(_parts(run.controller, run, run.arm.home if q_start is None else q_start) if ours else {})
+    config = run.controller
+    # Another law can have the config of one of these, or a config derived from it.
+    own = type(config).__module__ == CONTROLLERS.module(config.kind).__name__
+    find = _parts.registry[type(config) if own and type(config) in _parts.registry else object]
+    parts = dict(find(config, run, run.arm.home if q_start is None else q_start))
     bandwidths = run.disturbance_observer.by_loop(run.loops)
     if bandwidths:
         parts["disturbance observer"] = 1.0 / min(bandwidths)
@@ -68,7 +73,8 @@ def _parts(config: object, run: RunConfig, q: FloatArray) -> dict[str, float]:
     return {}
 
 
-@_parts.register(JointLawConfig)
+@_parts.register(JointPdConfig)
+@_parts.register(MotorPdConfig)
 @_parts.register(WholeBodyConfig)
 def _(config: JointLawConfig | WholeBodyConfig, run: RunConfig, q: FloatArray) -> dict[str, float]:
     return {"position loop": _loop(config.natural_frequency, config.damping_ratio)}

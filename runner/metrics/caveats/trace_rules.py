@@ -1,4 +1,4 @@
-"""Caveat rules on signals: tracking error, position limits of joints, and torques at their limits."""
+"""Caveat rules on signals: tracking error, limits of joint positions and speeds, and torques at their limits."""
 
 import numpy as np
 
@@ -9,6 +9,7 @@ from runner.metrics.caveats.setting import IDEAL, Setting, Signals
 
 _AT_LIMIT = 1.0 - 1e-12  # as in the metric saturation_fraction
 _SIZED = 60  # most rows, including the last one, used for the size of a motion
+_DIGITS_OF_SPEED = 9  # a speed at its limit may exceed it by rounding
 _END = 10  # for a motion to a goal, the last tenth of the run is evaluated
 
 
@@ -61,6 +62,22 @@ def _tell_beyond(value: float, joint: int, setting: Setting) -> str:
     )
 
 
+def _speeding(signals: Signals, setting: Setting) -> FloatArray:
+    """Return the largest speed of each joint as a fraction of its limit, shape (..., nq); 0 without a limit."""
+    limits = np.where(setting.velocity_limits > 0.0, setting.velocity_limits, np.inf)  # a limit of 0 is a missing one
+    fastest = np.abs(by_rows(signals.dq)).max(axis=-1)
+    share: FloatArray = np.round(fastest / limits, _DIGITS_OF_SPEED)
+    return share
+
+
+def _tell_speeding(value: float, joint: int, setting: Setting) -> str:
+    limit = f"{setting.velocity_limits[joint]:.4g} {setting.joint_units[joint]}/s"
+    return (
+        f"{called(joint, setting)} moves at {value:.3g} times its speed limit, {limit}, which the plant "
+        f"{setting.plant} does not enforce; take a slower motion"
+    )
+
+
 def _tell_saturated(value: float, joint: int, setting: Setting) -> str:
     name, limit = called(joint, setting), _limit(joint, setting)
     if setting.plant == IDEAL:
@@ -108,5 +125,6 @@ TRACE_RULES = (
     TraceRule("saturation", lambda signals, setting: signals.saturation, _tell_saturated),
     TraceRule("chatter", _chatter, _tell_chatter),
     TraceRule("joint_limits", _beyond, _tell_beyond),
+    TraceRule("joint_speed", _speeding, _tell_speeding),
 )
 """Rules in the order of output."""

@@ -11,6 +11,7 @@ from runner.audit.sources import Where
 from runner.audit.verdict import SAMPLES, VERDICTS, CheckedEquation
 from runner.base import progress
 from runner.base.data_file import line_of
+from runner.base.machine import this_machine
 from runner.base.quantities import quantity
 from runner.reporting.audit.forms import RightElements, forms_of
 from runner.reporting.document import (
@@ -183,7 +184,7 @@ def _error(checked: CheckedEquation) -> str:
     if checked.verdict != "wrong as printed":
         return f"within {quantity(entry.tolerance, entry.unit, 2)}"
     if math.isinf(measured.largest):
-        return f"without bound, typically {quantity(measured.typical, entry.unit)}"
+        return "without bound"
     return f"up to {quantity(measured.largest, entry.unit)}, typically {quantity(measured.typical, entry.unit)}"
 
 
@@ -214,7 +215,7 @@ def _provenance() -> Provenance:
         (
             ("commit", provenance.commit() or "none (installed package)"),
             ("configurations", f"{SAMPLES}, seed 0"),
-            ("machine", provenance.machine()),
+            ("machine", this_machine().text),
             *provenance.versions().items(),
         )
     )

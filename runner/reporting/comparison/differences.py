@@ -6,7 +6,9 @@ from typing import Any
 
 import numpy as np
 
+from runner.base.machine import Machine, parts_apart
 from runner.reporting.comparison.pairs import Pairs, label_text
+from runner.reporting.words import join_values
 from runner.store.seal import simulated_part
 from runner.sweeps.differing import DISTANCE, entries, is_of_option
 from runner.sweeps.measurements import Measurements
@@ -14,8 +16,8 @@ from runner.sweeps.measurements import Measurements
 # The number of repetitions and their seed do not define a cell.
 _OF_REPETITIONS = ("seed", "repetitions")
 _OPTION = ("kind", "name")
-# These parts of the provenance do not affect the physics.
-_NO_PHYSICS = ("seed", "machine", "made on", "plant")
+_NO_PHYSICS = ("seed", "made on", "plant")  # parts of the provenance that do not affect the result
+_MACHINE = "machine"
 _FOLLOWING = ("plant.step", DISTANCE)  # from other values, which precede them
 ABSENT = "(absent)"
 
@@ -44,7 +46,7 @@ class ConfigDifferences:
     Attributes:
         options: Groups with different options, such as `controller`.
         values: Other resolved values that differ.
-        provenance: What made the runs, where that differs: commit and versions.
+        provenance: What made the runs, where that differs: commit, versions and machine.
     """
 
     options: Sequence[Value]
@@ -64,7 +66,7 @@ class ConfigDifferences:
             b: What the second is called.
         """
         if not self.names:
-            return f"{a} and {b} differ in no value."
+            return self._machines_in_words(a, b) or f"{a} and {b} differ in no value."
         first = self.options or self.values
         heads = list(dict.fromkeys(value.key for value in self.options)) or self.names[:1]
         told = ", ".join(f"{key} ({_both(first, key)})" for key in heads)
@@ -73,6 +75,17 @@ class ConfigDifferences:
             return f"{a} and {b} differ only in {heads[0]}: {_both(first, heads[0])}."
         beside = f", and also in {', '.join(rest)}" if rest else ""
         return f"{a} and {b} differ in {told}{beside}. What follows may be due to any of these."
+
+    def _machines_in_words(self, a: str, b: str) -> str:
+        """Return a sentence for equal configs that were simulated on different machines; empty for one machine."""
+        machine = next((value for value in self.provenance if value.key == _MACHINE), None)
+        others = [value.key for value in self.provenance if value is not machine]
+        if machine is None:
+            return ""
+        apart = f"{machine.a} against {machine.b}"
+        if others:
+            return f"{a} and {b} differ in no value, but in the machine ({apart}) and in {', '.join(others)}."
+        return f"{a} and {b} differ only in the machine: {apart}. What follows may be rounding, which can grow."
 
 
 def find_differences(pairs: Pairs) -> ConfigDifferences:
@@ -134,9 +147,19 @@ def _values(key: str, texts: Texts, pairs: Pairs, name: str = "") -> list[Value]
 
 def _provenance(a: Measurements, b: Measurements) -> Iterator[Value]:
     for name in dict.fromkeys([*a.provenance, *b.provenance]):
-        of_a, of_b = (", ".join(side.provenance.get(name, [])) for side in (a, b))
-        if name not in _NO_PHYSICS and of_a != of_b:
+        of_a, of_b = (join_values(side.provenance.get(name, [])) for side in (a, b))
+        if name == _MACHINE:
+            yield from _machines(a.machines, b.machines)
+        elif name not in _NO_PHYSICS and of_a != of_b:
             yield Value(name, of_a or ABSENT, of_b or ABSENT)
+
+
+def _machines(of_a: Sequence[Machine], of_b: Sequence[Machine]) -> Iterator[Value]:
+    """Yield the parts in which the machines of two sides are known to differ, if the sides have other machines."""
+    names = parts_apart([*of_a, *of_b])
+    texts = [join_values(sorted({machine.in_words(names) for machine in some})) for some in (of_a, of_b)]
+    if texts[0] != texts[1]:
+        yield Value(_MACHINE, texts[0] or ABSENT, texts[1] or ABSENT)
 
 
 def _both(values: Sequence[Value], key: str) -> str:

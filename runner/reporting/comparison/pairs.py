@@ -108,7 +108,14 @@ def compare(pairs: Pairs, metric: str) -> Comparison | None:
     else:
         chosen = np.arange(len(kept))
     one, other, by_draw = (_mean_by(draw, values)[chosen] for values in (first[both], second[both], differences))
-    return Comparison(one, other, by_draw, _error(pairs, metric) if metric in a.finer and metric in b.finer else None)
+    error = _error(pairs, metric) if metric in a.finer and metric in b.finer else None
+    return Comparison(one, other, by_draw, error, _largest_rounding(pairs, metric))
+
+
+def _largest_rounding(pairs: Pairs, metric: str) -> float:
+    """Return the largest relative change of a metric through rounding in the compared cells; 0 if it is unknown."""
+    sides = ((pairs.a, pairs.of_a), (pairs.b, pairs.of_b))
+    return max((float(side.rounding[metric][of].max()) for side, of in sides if metric in side.rounding), default=0.0)
 
 
 def _error(pairs: Pairs, metric: str) -> float | None:

@@ -38,6 +38,7 @@ from runner.reporting.markup import literal
 from runner.reporting.metric_titles import capital, title, whole_metrics
 from runner.reporting.sweep.subject import MOST_METRICS, key_label, shorten, spans_decades
 from runner.reporting.table import numbers
+from runner.reporting.words import join_values
 from runner.sweeps.measurements import Measurements
 
 _MOST_CHARACTERS = 36  # of the names of all cells below a panel
@@ -126,7 +127,7 @@ def _made(sides: Sequence[Measurements]) -> Section:
         blocks += [Text(f"{side.name} is made by"), Code(side.command)]
     rows = []
     for name in dict.fromkeys(name for side in sides for name in side.provenance):
-        texts = {side.name: ", ".join(side.provenance.get(name, ["–"])) for side in sides}
+        texts = {side.name: join_values(side.provenance.get(name, ["–"])) for side in sides}
         same = len(set(texts.values())) == 1
         rows += [(name, texts[sides[0].name])] if same else [(f"{name}, {side}", text) for side, text in texts.items()]
     return Section("Provenance", [*blocks, Provenance(rows)])
@@ -148,7 +149,7 @@ def _difference_tables(found: SweepComparison) -> list[Block]:
         blocks.append(Table(caption, ["key", a, b, "at"], rows))
     if found.differences.provenance:
         rows = [[value.key, value.a, value.b] for value in found.differences.provenance]
-        blocks.append(Table("They were made by different versions.", ["made by", a, b], rows))
+        blocks.append(Table("They were made by different versions or machines.", ["made by", a, b], rows))
     return blocks
 
 

@@ -7,8 +7,9 @@ from typing import Any
 import numpy as np
 
 from runner.base.dotted_keys import dotted, leaves
+from runner.base.machine import read_machine
 from runner.base.sanitize import one_line
-from runner.reporting.answers import EXPLAINED, HEADER, Answer, Asked, sentences, short_table
+from runner.reporting.answers import EXPLAINED, HEADER, Answer, Asked, ask, sentences, short_table
 from runner.reporting.comparison.differences import Value, find_differences
 from runner.reporting.comparison.pairs import label_text, match
 from runner.reporting.comparison.sweeps import (
@@ -31,7 +32,7 @@ ALL = "--all prints every metric and the method, --json all numbers."
 """Last line of a short comparison."""
 
 _MOST_ROWS = 15  # of a short table
-# Possible causes of a difference besides the config; date, machine and command do not affect the physics.
+# Possible causes of a difference besides the config; date and command do not affect the result.
 _PROVENANCE = ("commit", "versions", "plant_step")
 
 
@@ -109,11 +110,16 @@ def run_lines(
     for side, run in zip(sides, runs, strict=True):
         yield one_line(f"{side.name}  {run.folder}  {run.failure or run.status}")
     yield ""
-    yield one_line(find_differences(match(*sides)).in_words(a, b))
+    pairs = match(*sides)
+    yield one_line(find_differences(pairs).in_words(a, b))
     yield _changed_keys("config", [simulated_part(run.config) for run in runs], [a, b])
     if runs[0].urdf != runs[1].urdf:
         yield "  the text of robot.urdf differs"
-    made_by = [{key: run.provenance[key] for key in _PROVENANCE if key in run.provenance} for run in runs]
+    made_by = [
+        {key: run.provenance[key] for key in _PROVENANCE if key in run.provenance}
+        | {"machine": {part: text for part, text in read_machine(run.provenance["machine"]).record().items() if text}}
+        for run in runs
+    ]
     yield _changed_keys("provenance", made_by, [a, b])
     yield ""
     names = metrics or ([name for side in sides for name in side.values] if everything else main_metrics(sides))
@@ -131,7 +137,12 @@ def run_lines(
         header = ["metric", "unit", *numbers(f"{b} - {a}", *HEADER[1:]), f"{b} is"]
         yield terminal(Table("", header, [[one.metric, one.unit, *one.plain_cells] for one in answers]))
         yield EXPLAINED
-    elif not everything:
+        return
+    both = [name for name in dict.fromkeys(names) if all(name in side.values for side in sides)]
+    rounded = [one.metric for one in ask([pairs], both) if one.comparison.rounding and one.within_rounding]
+    if rounded and pairs.share_seeds.all():
+        yield f"equal up to rounding, which changes them as much: {', '.join(rounded)}"
+    if not everything:
         yield ALL
 
 

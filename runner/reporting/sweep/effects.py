@@ -100,10 +100,11 @@ def _main_effects(subject: Subject) -> list[Curves]:
     figures: list[Curves] = []
     for metric in subject.metrics[:3]:
         panels = [_main_effect(subject, metric, axis) for axis in subject.axes]
-        sizes = [
-            _at_level(subject, metric, axis, level).size for axis in subject.axes for level in range(len(axis.values))
-        ]
-        n = f"n = {min(sizes)}" if len(set(sizes)) == 1 else f"n = {min(sizes)} to {max(sizes)}"
+        present = np.sum(~np.isnan(subject.measurements.values[metric]), axis=1)
+        sizes = np.concatenate([np.bincount(axis.level, present, len(axis.values)) for axis in subject.axes]).astype(
+            int
+        )
+        n = f"n = {sizes.min()}" if sizes.min() == sizes.max() else f"n = {sizes.min()} to {sizes.max()}"
         caption = (
             f"{capital(title(metric))} and each axis: median of all repetitions at each value ({n}); shaded, or a bar, "
             "the half of them between the quartiles."

@@ -34,6 +34,7 @@ from runner.reporting.sweep.question import (
     too_few,
 )
 from runner.reporting.sweep.subject import Subject, choose
+from runner.reporting.words import join_values
 from runner.store import Sweep
 from runner.sweeps.measurements import Measurements, measure_sweep
 
@@ -205,7 +206,7 @@ def list_runs(
 
 def made_by(measurements: Measurements, name: tuple[str, str]) -> Section:
     """Return the provenance of the runs, and the name of their sweep or tuning."""
-    rows = [(what, ", ".join(_some(values))) for what, values in measurements.provenance.items()]
+    rows = [(what, join_values(_some(values))) for what, values in measurements.provenance.items()]
     return Section("Provenance", (Provenance([*rows, name]),))
 
 

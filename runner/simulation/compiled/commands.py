@@ -11,6 +11,7 @@ from numpy.typing import NDArray
 
 from runner.base.arrays import FloatArray
 from runner.base.errors import SimulationError
+from runner.config.parsing import require
 from runner.config.run import RunConfig
 from runner.controllers.controller import Loop
 from runner.controllers.torque_law import TorqueLaw
@@ -211,6 +212,9 @@ def find_commands(config: RunConfig, loops: Sequence[Loop]) -> Commands | None:
     laws = [unguarded(loop.controller) for loop in loops]
     if not evaluator() or not all(isinstance(law, TorqueLaw) and law.compilable for law in laws):
         return None
+    if config.interpreted:
+        _tell(f"{' and '.join(config.interpreted)}: no compiled form; the control loops are interpreted")
+        return None
     nq = len(limits.max)
     if nq > MOST_JOINTS:
         _tell(f"the arm has {nq} joints, and code is made for {MOST_JOINTS} or fewer: laws are not compiled")
@@ -223,7 +227,8 @@ def find_commands(config: RunConfig, loops: Sequence[Loop]) -> Commands | None:
         for law, loop in zip(laws, loops, strict=True)
     ]
     guarded = any(isinstance(loop.controller, Guarded) for loop in loops)
-    return Commands(config.arm, config.ignore_base_rotation, tuple(codes), config.encoder_noise, limits, guarded)
+    noise = require(config.encoder_noise)
+    return Commands(config.arm, config.ignore_base_rotation, tuple(codes), noise, limits, guarded)
 
 
 def compiled(commands: Commands | None) -> Commands | None:

@@ -7,7 +7,7 @@ from runner.base.arrays import FloatArray
 from runner.controllers.force.admittance_filter import AXES, discretise
 from runner.sensing.force_torque import AXES as SENSOR_AXES
 from runner.sensing.force_torque import ForceTorqueConfig
-from runner.sensing.wrench import wrench_transform
+from runner.sensing.wrench import inverse_wrench_transform
 from runner.store import Run
 from runner.studies.meca500.figures import displacement, wrenches
 from runner.studies.meca500.plan import law_in
@@ -28,7 +28,7 @@ def noise(runs: Runs, pattern: str) -> list[list[str | float]]:
     """Return the residuals of readings at rest, less bias and true load, with noise and quantisation, by axis."""
     at_rest = [each.run for each in found(runs, pattern)]
     sensor = ForceTorqueConfig.model_validate(at_rest[0].config["wrist_sensor"])
-    seen = np.linalg.inv(wrench_transform(sensor.pose))
+    seen = inverse_wrench_transform(sensor.pose)
     left = np.vstack([wrenches(run, "reading") - wrenches(run, "load") @ seen.T - sensor.bias for run in at_rest])
     residuals, theories = np.sqrt(np.mean(left**2, axis=0)), np.sqrt(sensor.reading_variance(1))
     return [

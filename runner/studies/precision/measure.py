@@ -13,6 +13,7 @@ import numpy as np
 
 from runner import store
 from runner.base.errors import StoreError
+from runner.base.machine import this_machine
 from runner.base.trace import Trace
 from runner.config.compose.compose import compose
 from runner.config.run import RunConfig
@@ -69,7 +70,7 @@ def measure(outputs: Path) -> None:
     if known is not None and known["runs"] == hashes:
         return
     record = {
-        "machine": provenance.machine(),
+        "machine": this_machine().record(),
         "versions": provenance.versions(),
         "runs": hashes,
         "cases": {case: _solved(steps) for case, steps in cases.items()},

@@ -11,6 +11,7 @@ from optuna.storages import JournalStorage
 from optuna.storages.journal import BaseJournalBackend
 from optuna.trial import FrozenTrial
 
+from runner.base.bounded_json import decode_json
 from runner.base.errors import StoreError, describe_write_error
 from runner.store.seal import DamagedError, Lines
 from runner.sweeps.tuning.key import Key
@@ -90,7 +91,7 @@ class _SealedLines(BaseJournalBackend):
     def __init__(self, path: Path) -> None:
         self._path, self._lines = path, Lines()
         content = path.read_bytes() if path.exists() else b""
-        self._logs: list[dict[str, Any]] = [json.loads(text) for text in self._lines.read(content)]
+        self._logs: list[dict[str, Any]] = [decode_json(text) for text in self._lines.read(content)]
 
     def read_logs(self, log_number_from: int) -> Iterable[dict[str, Any]]:
         """Return the entries from an index on."""
@@ -118,7 +119,7 @@ def _load(path: Path) -> tuple[optuna.Study, list[FrozenTrial], list[Trial]]:
         study = optuna.load_study(study_name=name, storage=_open(path))
         history = study.get_trials(deepcopy=False)
         return study, history, [read_ended(frozen) for frozen in history]
-    except (OSError, ValueError, LookupError, TypeError, AttributeError, AssertionError, RecursionError) as error:
+    except (OSError, ValueError, LookupError, TypeError, AttributeError, AssertionError) as error:
         raise DamagedError(
             f"cannot read {path}: it is damaged: {error}; remove it to restart the tuning (its runs are found again)"
         ) from error

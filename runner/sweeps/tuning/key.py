@@ -4,9 +4,10 @@ import math
 from dataclasses import dataclass
 from typing import Any, Literal
 
-from hydra.core.override_parser.types import IntervalSweep, Override, RangeSweep, Transformer
+from hydra.core.override_parser.types import IntervalSweep, Override, RangeSweep
 
 from runner.base.errors import ConfigError
+from runner.sweeps.swept import range_values
 
 RANGES = (
     "interval(low, high), tag(log, interval(low, high)), int(interval(low, high)) for whole numbers, or "
@@ -88,7 +89,7 @@ def read_key(override: Override) -> Key | None:
         ends: tuple[Any, Any] = (found.start, found.end)
         return Key(name, *ends, step=None, log="log" in found.tags, integer=isinstance(ends[0], int))
     if isinstance(found, RangeSweep) and not found.tags:
-        values: list[Any] = list(override.sweep_iterator(Transformer.identity))
+        values = range_values(override)
         if len(values) < 2:
             raise ConfigError(f"{name}: its range is empty; {found.start} to {found.stop} has no two values")
         integer = all(isinstance(value, int) for value in values)

@@ -48,7 +48,20 @@ def test_a_value_of_numpy_is_that_of_python(value):
 
 
 @pytest.mark.parametrize(
-    "name", ["plain", "with space", "comma,s", "it's", 'quo"te', "back\\slash", "end\\", "b[r]ack{e}t", "a=b", "ä:ö #%"]
+    "name",
+    [
+        "plain",
+        "Übung",
+        "with space",
+        "comma,s",
+        "it's",
+        'quo"te',
+        "back\\slash",
+        "end\\",
+        "b[r]ack{e}t",
+        "a=b",
+        "ä:ö #%",
+    ],
 )
 def test_a_path_and_a_text_in_a_list_are_read_letter_by_letter(name):
     (path, texts) = run_overrides([], {"a": Path("folder") / name, "b": [name]})

@@ -7,6 +7,7 @@ import pytest
 
 import runner
 from runner.api.page import code, heading, line, listed, picture, table
+from runner.base.machine import Machine
 
 ONE_ARM = """\
 # @package _global_
@@ -140,6 +141,32 @@ def test_a_repetition_with_other_metrics_is_refused(run):
     other = runner.Run(run.folder, run.config, {**run.record, "metrics": metrics})
     with pytest.raises(runner.RunnerError, match=r"simulated again, differs: energy is .*, stored is 0\.0"):
         other.trace(1)
+
+
+def rounded(run, share, **provenance):
+    """Return a run whose stored energy differs by a share, and parts of its provenance."""
+    metrics = {name: dict(metric) for name, metric in run.record["metrics"].items()}
+    metrics["energy"]["values"] = [value * (1 + share) for value in metrics["energy"]["values"]]
+    record = {**run.record, "metrics": metrics, "provenance": {**run.provenance, **provenance}}
+    return runner.Run(run.folder, run.config, record)
+
+
+OTHERS = [{"machine": Machine("Alpha", "Linux").record()}, {"machine": "Alpha, Linux x86_64"}, {"versions": {}}]
+
+
+@pytest.mark.parametrize("provenance", OTHERS, ids=str)
+def test_a_run_of_another_machine_is_accepted_up_to_rounding(run, provenance):
+    other = rounded(run, 1e-9, **provenance)
+    with pytest.warns(RuntimeWarning, match="in the last digits of 1 metrics: its machine or library") as warned:
+        assert other.trace(1).equals(run.trace(1))
+    assert warned[0].filename == __file__
+    with pytest.raises(runner.RunnerError, match="another machine or library version rounds in another way"):
+        rounded(run, 1e-5, **provenance).trace(1)
+
+
+def test_a_run_of_this_machine_must_have_the_same_bits(run):
+    with pytest.raises(runner.RunnerError, match="so it is not reproducible"):
+        rounded(run, 1e-9).trace(1)
 
 
 def test_a_robot_whose_file_has_changed_is_told(tmp_path, monkeypatch, macro_urdf):

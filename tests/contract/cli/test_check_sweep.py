@@ -3,6 +3,9 @@
 import pytest
 import yaml
 
+import runner
+from runner.base.machine import this_machine
+
 SWEEP = ("-m", "hydra.sweeper.workers=0", "robot=macro", "duration=0.3", "noise=thesis", "trajectory=quintic")
 AXIS = "controller.natural_frequency=20,30"
 
@@ -24,12 +27,22 @@ def learned(cli, outputs, tmp_path):
 
 
 def _count(path):
-    return sum(map(len, yaml.safe_load(path.read_text())["cells"].values()))
+    return sum(len(cell["metrics"]) for cell in yaml.safe_load(path.read_text())["cells"].values())
 
 
 def change(path, cell, metric, **values):
+    """Change a metric of a cell, as if another run had been saved."""
+
+    def change_cell(content):
+        content["cells"][cell]["run"] = "0" * 24
+        content["cells"][cell]["metrics"][metric] |= values
+
+    edit(path, change_cell)
+
+
+def edit(path, function):
     content = yaml.safe_load(path.read_text())
-    content["cells"][cell][metric] |= values
+    function(content)
     path.write_text(yaml.safe_dump(content))
 
 
@@ -55,7 +68,7 @@ def test_what_moved_is_told_with_direction_and_spread(cli, learned):
     folder, path = learned
     cells = yaml.safe_load(path.read_text())["cells"]
     cell = "controller.natural_frequency=20"
-    peak, energy = (cells[cell][name]["median"] for name in ("peak_torque", "energy"))
+    peak, energy = (cells[cell]["metrics"][name]["median"] for name in ("peak_torque", "energy"))
     change(path, cell, "peak_torque", median=peak / 2, min=peak / 2, max=peak / 2)
     change(path, cell, "energy", median=energy * 2, min=energy / 2, max=energy * 3)
     ending = cli("check", folder, "--baseline", path, "--format", "markdown")
@@ -96,10 +109,118 @@ def test_cells_that_are_new_gone_or_failed_are_told(cli, outputs, learned):
     assert "a failed run cannot be in a baseline" in cli("check", failed, "--save-baseline", learned[1]).err
 
 
+CELL = "controller.natural_frequency=20"
+
+
+def move(share, **more):
+    """Return an edit that moves a metric of a cell by a share, whose seeds then agree."""
+
+    def change_content(content):
+        for machine in content["machines"].values():
+            machine |= more.get("machine", {})
+        for versions in content["versions"].values():
+            versions |= more.get("versions", {})
+        metric = content["cells"][CELL]["metrics"]["energy"]
+        value = metric["median"] * (1 + share)
+        metric |= {"median": value, "min": value, "max": value} | more.get("metric", {})
+
+    return change_content
+
+
+def test_a_baseline_keeps_the_run_the_machine_and_the_versions_of_each_cell(learned):
+    folder, path = learned
+    content = yaml.safe_load(path.read_text())
+    runs = runner.open_sweep(folder).runs()
+    assert content["schema"] == 2
+    for cell, run in zip(content["cells"].values(), runs, strict=True):
+        assert cell["run"] == run.hash
+        assert content["machines"][cell["machine"]] == run.provenance["machine"]
+        assert content["versions"][cell["versions"]] == run.provenance["versions"]
+    assert len(content["machines"]) == len(content["versions"]) == 1
+
+
+OTHER_CORE = {"machine": {"openblas": "Prescott"}}
+
+
+@pytest.mark.parametrize(
+    ("change_content", "code", "expected"),
+    [
+        (move(1e-9), 1, "not reproducible here"),
+        (move(1e-9, **OTHER_CORE), 0, "2 cells: the baseline is of another machine"),
+        (move(1e-3, **OTHER_CORE), 1, "yes, rounding or a library"),
+        (move(1e-3, **OTHER_CORE, metric={"min": 0.0}), 0, "no, rounding or a library"),
+        (move(-1e-3, **OTHER_CORE, metric={"max": 1e3}), 0, "no, rounding or a library"),
+        (move(1e-3, **OTHER_CORE, metric={"sensitive": 0.1}), 0, "yes, sensitive to rounding"),
+        (move(1e-3, **OTHER_CORE, metric={"sensitive": 1e-9}), 1, "yes, rounding or a library"),
+        (move(1e-3, metric={"sensitive": 0.1}), 1, "not reproducible here"),
+        (move(1e-3, versions={"numpy": "1.0"}), 1, "yes, rounding or a library"),
+        (
+            move(1e-9, versions={"numpy": "1.0"}),
+            0,
+            "of other library versions, which may round differently: numpy 1.0 a",
+        ),
+    ],
+)
+def test_a_run_of_the_same_name_moves_by_rounding_a_library_or_not_at_all(cli, learned, change_content, code, expected):
+    folder, path = learned
+    edit(path, change_content)
+    ending = cli("check", folder, "--baseline", path)
+    assert (ending.code, ending.err) == (code, "")
+    assert expected in ending.out
+
+
+def test_both_machines_are_named_where_rounding_moves_a_metric(cli, learned):
+    folder, path = learned
+    edit(path, move(1e-3, **OTHER_CORE))
+    expected = cli("check", folder, "--baseline", path, "--format", "markdown").out.splitlines()[-1]
+    assert expected == (
+        "2 cells: the baseline is of another machine, which may round differently: OpenBLAS Prescott against OpenBLAS "
+        f"{this_machine().openblas} here"
+    )
+
+
+def without(key, value=None):
+    def change_content(content):
+        for cell in content["cells"].values():
+            cell[key] = value
+
+    return change_content
+
+
+def former(content):
+    content["schema"] = 1
+    content["cells"] = {name: cell["metrics"] for name, cell in content["cells"].items()}
+    del content["machines"], content["versions"]
+
+
+@pytest.mark.parametrize(
+    ("change_content", "expected"),
+    [
+        (former, "2 cells: the baseline names no run, so rounding is not distinguished"),
+        (without("run"), "2 cells: the baseline names no run, so rounding is not distinguished"),
+        (without("machine"), "2 cells: the baseline or the run does not name machine and versions"),
+        (without("versions"), "2 cells: the baseline or the run does not name machine and versions"),
+        (without("versions", "v9"), "2 cells: the baseline or the run does not name machine and versions"),
+    ],
+)
+def test_a_baseline_that_does_not_name_what_made_it_is_checked_and_says_so(cli, learned, change_content, expected):
+    folder, path = learned
+    edit(path, change_content)
+    ending = cli("check", folder, "--baseline", path)
+    assert (ending.code, ending.err) == (0, "")
+    first, sentence = ending.out.splitlines()
+    assert first.startswith("good: ")
+    assert sentence.startswith(expected)
+
+
 @pytest.mark.parametrize(
     ("content", "message"),
     [
-        ("schema: 2\ncells: {a: {energy: {unit: J, median: 1.0, min: 1.0, max: 1.0, seeds: 1}}}", "schema: must be 1"),
+        (
+            "schema: 3\ncells: {a: {metrics: {energy: {unit: J, median: 1.0, min: 1.0, max: 1.0, seeds: 1}}}}",
+            "schema: must be 1 or 2; found 3",
+        ),
+        ("schema: 2\ncells: {a: {energy: {unit: J, median: 1.0}}}", "cells.a.metrics: missing"),
         ("schema: 1\ncells: {}", "cells: must have at least one metric"),
         (
             "schema: 1\ncells: {a: {energy: {unit: J, median: x, min: 1.0, max: 1.0, seeds: 1}}}",

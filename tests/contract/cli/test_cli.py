@@ -71,6 +71,17 @@ def test_help_of_a_command_is_its_own(cli, capsys, command):
     assert printed.startswith(f"usage: runner {'run' if command == 'sweep' else command} [-")
 
 
+def test_help_and_usage_have_no_colours(cli, monkeypatch):
+    monkeypatch.delenv("NO_COLOR", raising=False)
+    monkeypatch.setenv("FORCE_COLOR", "1")
+    for words in (["--help"], ["report", "--nothing"]):
+        ending = cli(*words)
+        assert ending.out or "Usage: runner report [--format A,B]" in ending.err
+        assert "\x1b" not in ending.out + ending.err
+        assert "x1b" not in ending.err
+    assert "\x1b" not in build_parser(["report"]).commands["report"].format_help()
+
+
 def test_version(cli):
     assert cli("--version").out.strip() == VERSION
 
@@ -115,8 +126,8 @@ def test_run_and_sweep_are_spelled_out_forms_of_overrides(cli):
     again = cli("run", *SHORT, ASKED)
     assert (again.code, again.folder) == (first.code, first.folder)
     assert "stored before in" in again.err
-    swept = cli("sweep", *IN_PROCESS, *SHORT, "seed=0,1")
-    assert swept.folder == cli("-m", *IN_PROCESS, *SHORT, "seed=0,1").folder
+    swept = cli("sweep", *IN_PROCESS, *SHORT, ASKED, "seed=0,1")
+    assert swept.folder == cli("-m", *IN_PROCESS, *SHORT, ASKED, "seed=0,1").folder
     assert "runner: 2 runs: 1 made, 1 stored before" in swept.err
     assert open_sweep(swept.folder).command.startswith("runner -m ")
 

@@ -1,12 +1,15 @@
 """`runner compare` of stored runs: what differs, in pairs or not, and what is refused."""
 
 import json
+import shutil
+from dataclasses import replace
 
 import pytest
 from fixtures.stored import SHORT
 from support.engines import ASKED
 
 import runner
+from runner.base.machine import this_machine
 from runner.store.seal import write_job
 
 
@@ -35,12 +38,12 @@ def test_a_run_and_itself(cli, copy_run):
 
 def test_config_keys_and_metrics_that_differ(cli, copy_run):
     a = copy_run("quintic")
-    changes = ("trajectory.duration=0.4", "torque_limits.max=[50,50,20]", "plant=rk4", "plant.step=0.001")
+    changes = ("trajectory.duration=0.4", "torque_limits.max=[50.5,50.5,20.5]", "plant=rk4", "plant.step=0.001")
     b = cli(*SHORT, "trajectory=quintic", "noise=thesis", *changes).folder
     out = cli("compare", a, b, "--all").out
     head, table = out.split("config differs:")[1].split("same provenance")
-    assert cells(head, "trajectory.duration") == ["1", "0.4"]
-    assert cells(head, "torque_limits.max") == ["null", "[50,", "50,", "20]"]
+    assert cells(head, "trajectory.duration") == ["1.0", "0.4"]
+    assert cells(head, "torque_limits.max") == ["null", "[50.5,", "50.5,", "20.5]"]
     assert cells(head, "plant.kind") == [ASKED.removeprefix("plant="), "rk4"]
     assert cells(head, "plant.step") == ["null", "0.001"]
     assert "outputs" not in head
@@ -80,6 +83,19 @@ def test_provenance_and_robots_that_differ(cli, copy_run):
     assert cells(out, "plant_step") == ["0.001", "0.0005"]
 
 
+def test_equal_runs_of_two_machines_differ_in_the_machine_alone(cli, copy_run, tmp_path):
+    a = copy_run("goal")
+    b = shutil.copytree(a, tmp_path / "elsewhere" / "runs" / a.name)
+    for run, core in ((a, "Haswell"), (b, "SkylakeX")):
+        machine = replace(this_machine(), openblas=core).record()
+        change(run, lambda record, machine=machine: record["provenance"].update(machine=machine))
+    out = cli("compare", a, b).out
+    expected = "A and B differ only in the machine: OpenBLAS Haswell against OpenBLAS SkylakeX."
+    assert f"\n{expected} What follows may be rounding, which can grow.\nsame config\n" in out
+    assert cells(out, "machine.openblas") == ["Haswell", "SkylakeX"]
+    assert "differ in no value" not in out
+
+
 def test_a_failed_run_says_why(cli, copy_run):
     run = copy_run("failed")
     assert f"B  {run}  failed in repetition 0 at t = 0.6 s (q1): diverged" in cli("compare", run, run).out
@@ -109,10 +125,10 @@ def test_what_is_compared_is_told_before_any_number(cli, copy_run):
     a = copy_run("goal")
     b, one = (cli(*SHORT, *other, "gravity=9.7").folder for other in (("controller.period=0.005",), ()))
     assert "\nA and B differ only in gravity: 9.81 against 9.7.\n" in cli("compare", a, one).out
-    told = next(line for line in cli("compare", a, b).out.splitlines() if line.startswith("A and B differ"))
-    assert "gravity (9.81 against 9.7), and also in " in told
-    assert "controller.period" in told
-    assert told.endswith("may be due to any of these.")
+    expected = next(line for line in cli("compare", a, b).out.splitlines() if line.startswith("A and B differ"))
+    assert "gravity (9.81 against 9.7), and also in " in expected
+    assert "controller.period" in expected
+    assert expected.endswith("may be due to any of these.")
     assert "\nA and B differ in no value.\nsame config\n" in cli("compare", a, a).out
 
 

@@ -5,10 +5,12 @@ import re
 import shutil
 import socket
 import time
+from dataclasses import replace
 
 import pytest
 from support.printed import without_caveats
 
+from runner.base.machine import this_machine
 from runner.store import open_runs
 from runner.store.seal import sealed_json
 from runner.sweeps.at_work import at_work
@@ -67,3 +69,20 @@ def test_a_folder_that_is_no_sweep(cli, tmp_path):
     ending = cli("status", tmp_path)
     assert ending.code == 2
     assert "it is not the folder of a stored result. Allowed: the folder of a sweep" in ending.err
+
+
+@pytest.mark.parametrize("trace", ["all", "never"])
+def test_a_sweep_that_went_on_on_another_machine_names_both(cli, monkeypatch, trace):
+    words = ("-m", "hydra.sweeper.workers=0", "robot=macro", "duration=0.05", f"sweep.trace={trace}")
+    here, other = this_machine(), replace(this_machine(), openblas="Prescott", numpy="")
+    with monkeypatch.context() as elsewhere:
+        for module in ("runner.simulation.provenance", "runner.sweeps.batch"):
+            elsewhere.setattr(f"{module}.this_machine", lambda: other)
+        assert "machines" not in cli(*words, "seed=0,1").err
+    ended = cli(*words, "seed=0,1,2")
+    cores = f"2 runs on OpenBLAS Prescott; 1 run on OpenBLAS {here.openblas}"
+    expected = f"made on 2 machines, which may round differently: {cores}"
+    assert f"runner: {expected}\n" in ended.err
+    assert expected in cli("status", ended.folder).out.splitlines()
+    page = (cli("report", ended.folder, "--format", "html").folder / "report.html").read_text()
+    assert f"<dd>{here.text}; {other.text}</dd>" in page or f"<dd>{other.text}; {here.text}</dd>" in page

@@ -47,6 +47,23 @@ def test_equal_versions_differ_in_nothing(cli, versions):
     assert cli("study", "diff", versions[0], versions[0]).out == "nothing changed\n"
 
 
+def test_what_is_equal_up_to_rounding_is_counted(cli, tmp_path):
+    new = copy.deepcopy(OLD)
+    for metric in new["thesis"]["numbers"]["goal"]["metrics"].values():
+        metric["median"] += 1e-14
+    for name, content in (("old", OLD), ("new", new)):
+        (tmp_path / f"{name}.json").write_text(json.dumps(content))
+    both = tmp_path / "old.json", tmp_path / "new.json"
+    assert cli("study", "diff", *both).out == "nothing changed; 30 numbers equal up to rounding\n"
+    assert len(cli("study", "diff", *both, "--all").out.splitlines()) == 31
+    new["thesis"]["numbers"]["goal"]["metrics"]["metric_0"]["median"] = 2.0
+    both[1].write_text(json.dumps(new))
+    assert cli("study", "diff", *both).out.splitlines() == [
+        "number: thesis: goal metric_0 median (m): 1 -> 2 (100 %)",
+        "number: 1 changed; 29 numbers equal up to rounding",
+    ]
+
+
 def test_programs_get_all_of_it(cli, versions):
     written = json.loads(cli("study", "diff", *versions, "--json").out)
     assert len(written) == 2 + 2 + 29

@@ -9,6 +9,7 @@ from runner.config.arms import build_robot, read_outline
 from runner.config.compose.compose import compose
 from runner.config.parsing import group_of, parse_robot
 from runner.config.validation import validate
+from runner.robots.description import find_urdf
 
 ROBOTS = sorted(path.stem for path in (conf_dir() / "robot").glob("*.yaml"))
 
@@ -45,3 +46,18 @@ def test_a_wrong_arm_is_reported_with_all_other_problems(override, problem):
     assert typo.startswith("typo: unknown key")
     assert seed.startswith("seed: must be")
     assert arm.startswith(problem)
+
+
+@pytest.mark.parametrize("home", ["[0,0,0]", "[0,0.5,0]"])
+def test_a_continuous_joint_is_named_as_such_wherever_it_starts(tmp_path, home):
+    urdf = find_urdf("macro.urdf").read_text().replace('name="q2" type="revolute"', 'name="q2" type="continuous"')
+    (tmp_path / "robot").mkdir()
+    (tmp_path / "endless.urdf").write_text(urdf)
+    text = (conf_dir() / "robot" / "macro.yaml").read_text()
+    (tmp_path / "robot" / "endless.yaml").write_text(text.replace("macro", "endless"))
+    with pytest.raises(ConfigError) as raised:
+        validate(compose(["robot=endless", f"robot.home={home}"], [tmp_path]))
+    assert list(raised.value.problems) == [
+        f"robot.urdf: joint 'q2' in {tmp_path / 'endless.urdf'} is continuous; allowed: revolute or prismatic; "
+        "`runner doctor FILE --output DIR` makes a continuous joint revolute"
+    ]

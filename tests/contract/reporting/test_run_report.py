@@ -36,7 +36,8 @@ def blocks_of(document, kind):
 
 @pytest.mark.parametrize("name", ["failed", "stages", "flexible", "rk4"])
 def test_the_report_is_as_recorded(runs, name, as_recorded):
-    as_recorded("reports", name, run_document(runs[name]))
+    diverged = (r"-: Curves", r"-: Playback") if name == "failed" else ()
+    as_recorded("reports", name, run_document(runs[name]), diverged)
 
 
 def test_the_report_on_two_runs_is_as_recorded(runs, as_recorded):
@@ -70,7 +71,7 @@ def test_a_finished_run_is_told_whole(finished):
     assert metrics.rows[0][0] == title(metrics.rows[0][1])
     assert metrics.caption == "Metrics over 2 repetitions."
     assert ["controller.natural_frequency", "30.0"] in [list(row) for row in config.rows]
-    assert ["trajectory.duration", "1", "3.0"] in [list(row) for row in changed.rows]
+    assert ["trajectory.duration", "1.0", "3.0"] in [list(row) for row in changed.rows]
     assert "outputs" not in [row[0] for row in config.rows]
     (file,) = blocks_of(document, Code)
     assert yaml.safe_load(file.text) == {key: value for key, value in finished.config.items() if key != "outputs"}

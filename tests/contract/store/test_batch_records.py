@@ -39,6 +39,7 @@ def record_alone(metrics, run, found, provenance):
     each = summarize_arrays(tuple(metrics), np.array([values[run] for values in metrics.values()]).T)
     result = SimpleNamespace(
         failure=None, caveats=found, metrics=each, timing=TIMING, provenance=provenance, plant_error=None,
+        rounding=None,
         config=SimpleNamespace(settings=SimpleNamespace(repetitions=repetitions), resolved={}),
     )  # fmt: skip
     return make_record(result)

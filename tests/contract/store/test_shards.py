@@ -8,7 +8,9 @@ import pyarrow.parquet
 import pytest
 
 from runner.base.errors import StoreError
+from runner.base.machine import Machine
 from runner.store import DamagedError, Finished, Outcome, SchemaError, shards
+from runner.store.parquet import encode_parquet
 from runner.store.run import Run
 from runner.store.shards import (
     ShardRow,
@@ -54,6 +56,21 @@ def test_what_goes_in_comes_out(tmp_path):
     assert list((tmp_path / "shards").iterdir()) == [path]
     assert path.name.startswith("00000000000000000007-a-000001.")
     assert find_shards(tmp_path, shard_name(7, "a", 1)) == [path]
+
+
+def test_the_machine_of_each_run_is_kept_and_an_earlier_shard_has_none(tmp_path):
+    runs = [make(tmp_path, name) for name in "abc"]
+    machines = [Machine("Alpha", numpy="X86_V3"), Machine("Beta", numpy="X86_V4")]
+    for run, machine in zip(runs, machines, strict=False):
+        run.record["provenance"]["machine"] = machine.record()
+    path = write_shard(tmp_path, shard_name(1, "a", 1), runs)
+    finished = Finished(tmp_path)
+    assert [finished.outcome(name).machine for name in "abc"] == [*machines, Machine("m")]
+    table = pyarrow.parquet.read_table(path).drop_columns("machine")
+    path.unlink()
+    content = encode_parquet(table)
+    path.with_name(f"1-1.{shards.digest(content)[:24]}.parquet").write_bytes(content)
+    assert {Finished(tmp_path).outcome(name).machine for name in "abc"} == {Machine()}
 
 
 def test_shards_are_numbered_without_a_clock(tmp_path):

@@ -74,7 +74,7 @@ def test_a_copied_run_is_read_elsewhere(run, tmp_path):
         ("metrics.json", b"", "metrics.json: it is damaged: Expecting value"),
         ("metrics.json", b'{"schema": 3, "sta', "metrics.json: it is damaged: Unterminated string"),
         ("metrics.json", b"\xff\xfe\x00\x01", "metrics.json: it is damaged: "),
-        ("metrics.json", b"[" * 100_000, "metrics.json: it is damaged: maximum recursion depth"),
+        ("metrics.json", b"[" * 100_000, "metrics.json: it is damaged: nested deeper than 100 levels"),
         ("metrics.json", b"1" * 6000, "metrics.json: it is damaged: Exceeds the limit"),
         ("metrics.json", b"[]", "metrics.json: it is damaged: it names no schema"),
         ("metrics.json", b"{}", "metrics.json: it is damaged: it names no schema"),
@@ -103,12 +103,12 @@ def test_a_damaged_run_is_said_by_every_command_and_made_again(cli, run, name, c
 
 
 @pytest.mark.parametrize("schema", [1, 2, 4])
-def test_a_run_of_another_schema_is_refused_by_every_command(cli, run, monkeypatch, schema):
+def test_a_run_of_another_schema_is_refused_by_name(cli, run, monkeypatch, schema):
     record = {key: value for key, value in run.record.items() if key != "schema"}
     with monkeypatch.context() as patch:
         patch.setattr(seal, "SCHEMA", schema)
         (run.folder / "metrics.json").write_bytes(seal.sealed_json(record))
-    for command in (("check", run.folder), ("compare", run.folder, run.folder), ("report", run.folder), ("verify",)):
+    for command in (("check", run.folder), ("compare", run.folder, run.folder), ("report", run.folder)):
         ending = cli(*command)
         assert (ending.code, ending.out) == (2, "")
         assert re.fullmatch(

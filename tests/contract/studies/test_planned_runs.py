@@ -86,7 +86,7 @@ SOME = {
         ("thesis_beyond", 267, 0),
         ("xarm7", 119, 0),
         ("meca500", 244, 36),
-        ("engines", 309, 0),
+        ("engines", 253, 0),
         ("precision", 90, 0),
         ("benchmark", 2444, 0),
     ],

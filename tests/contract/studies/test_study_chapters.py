@@ -32,6 +32,15 @@ STANDING = {
     **{study: files for study, files in FILES.items() if study not in ("thesis", "thesis_beyond", "meca500")},
     "thesis": [file for file in FILES["thesis"] if file.removesuffix(".md") in STANDING_OF_THE_THESIS],
 }
+OF_ROUNDING = {  # inverses of singular matrices
+    "xarm7/why_it_failed.md": (
+        r"caption: \|J X - 1\| of the printed pseudo-inverse",
+        r"measured: median \|J X - 1\|",
+        r"measured: smallest \|J X - 1\|",
+        r"measured: share of the cases that NumPy refuses",
+        r"caption: Of the seven singular values",
+    )
+}
 FINISHED = ("condition numbers inf (force)", "No joint passes its position limit")  # these words are meant
 SPOILED: dict[str, Callable[[Mapping[str, Run]], Mapping[str, Run]]] = {
     "all": every_run,
@@ -44,14 +53,14 @@ SPOILS = [pytest.param(name, marks=() if name in ("all", "third 0") else pytest.
 @pytest.mark.costs(3)
 @pytest.mark.parametrize(("study", "file"), CHAPTERS)
 def test_a_chapter_has_its_sections_and_each_condition_can_fail(
-    made: Callable[[str], Made], as_recorded: Callable[[str, str, Section], None], study: str, file: str
+    made: Callable[[str], Made], as_recorded: Callable[..., None], study: str, file: str
 ) -> None:
     chapters = made(study).chapters
     section = chapters.section(file)
     assert section.blocks or section.sections
     assert faults(section) == []
     if has_pybullet() or study != "meca500":  # whose runs are made here
-        as_recorded(study, file, section)
+        as_recorded(study, file, section, OF_ROUNDING.get(f"{study}/{file}", ()))
     if file.endswith(".md"):
         text = (load_study(study).folder / file).read_text(encoding="utf-8")
         written = re.findall(r"^## (.*)$", text, re.MULTILINE)

@@ -56,3 +56,15 @@ def test_cells_that_share_a_group_share_the_object():
     cells = [plan.composed(cell).resolved for cell in range(len(plan))]
     assert len({id(config["noise"]) for config in cells}) == 2
     assert len({id(config["controller"]) for config in cells}) == 1
+
+
+@pytest.mark.parametrize("values", ["1,1.0,2", "range(1,3)", "1,2"])
+def test_an_integer_of_a_float_key_is_the_run_of_its_float(values):
+    plan = plan_sweep([*SHORT, f"robot.payload.mass={values}"])
+    floats = [repr(plan.composed(cell).resolved["robot"]["payload"]["mass"]) for cell in range(len(plan))]
+    names = check(plan).names
+    assert floats == (["1.0", "1.0", "2.0"] if len(plan) == 3 else ["1.0", "2.0"])
+    assert list(names) == list(check(plan_sweep([*SHORT, f"robot.payload.mass={','.join(floats)}"])).names)
+    assert (
+        plan_sweep([*SHORT, "repetitions=1,1.0"]).composed(1).resolved["repetitions"] == 1.0
+    )  # reported as no integer

@@ -232,7 +232,7 @@ def test_outputs_are_one_folder_for_all(sweep, tmp_path):
 @pytest.mark.parametrize("second", ["seed=0,1", "seed=2,3", "seed=1,2"], ids=["equal", "disjoint", "overlapping"])
 def test_a_second_sweep_begins_and_ends_while_the_first_is_at_work(sweep, threads, monkeypatch, trace, second):
     begun, done = threading.Event(), threading.Event()
-    begin = execution._find_stored
+    begin = execution.find_stored
 
     def wait(*arguments):
         found = begin(*arguments)
@@ -241,7 +241,7 @@ def test_a_second_sweep_begins_and_ends_while_the_first_is_at_work(sweep, thread
             assert done.wait(PATIENCE)
         return found
 
-    monkeypatch.setattr(execution, "_find_stored", wait)
+    monkeypatch.setattr(execution, "find_stored", wait)
     keep = f"sweep.trace={trace}"
     first = threads.submit(sweep, "seed=0,1", keep)
     assert begun.wait(PATIENCE)

@@ -72,3 +72,19 @@ def test_a_cell_does_not_change_its_neighbours():
 def test_what_does_not_compose_is_said():
     with pytest.raises(ConfigError, match=r"refers to robot\.nope, which the chosen robot lacks"):
         plan_sweep(("trajectory.goal=[0,0,1],${robot.nope}",)).composed(1)
+
+
+@pytest.mark.parametrize(
+    "values",
+    ["1,1.0,2", "1.0,1,2.0", "1,2.0", "1,null", "range(1,4)", "1,2,3", "true,1,2"],
+)
+def test_numbers_of_a_float_key_are_what_hydra_composes(values):
+    plan = plan_sweep((f"robot.payload.mass={values}",))
+    for cell in range(len(plan)):
+        assert repr(plan.composed(cell).resolved) == repr(compose(plan.overrides(cell)).resolved)
+
+
+def test_lists_of_a_float_key_are_what_hydra_composes():
+    plan = plan_sweep(("torque_limits.max=[1.5,2.0],[2.5,3.0],[4,5],[6,7.5]", "robot.goal=[0,0,1],[0,1,1]"))
+    for cell in range(len(plan)):
+        assert repr(plan.composed(cell).resolved) == repr(compose(plan.overrides(cell)).resolved)

@@ -1,6 +1,7 @@
 """Compiled code in the user's cache folder: found again, and not where others can write."""
 
 import os
+import resource
 import stat
 import sys
 from pathlib import Path
@@ -128,3 +129,15 @@ def test_without_a_folder_code_is_kept_in_the_process_alone(tmp_path, monkeypatc
     assert cache.folder() is None
     assert np.isfinite(stepped()).all()
     assert Path(file).read_text() == ""
+
+
+def test_a_file_that_cannot_be_written_whole_leaves_nothing(place):
+    before = resource.getrlimit(resource.RLIMIT_FSIZE)
+    resource.setrlimit(resource.RLIMIT_FSIZE, (1000, before[1]))
+    try:
+        cache.write("a", b"0" * 5000, {})
+    finally:
+        resource.setrlimit(resource.RLIMIT_FSIZE, before)
+    assert list(place.iterdir()) == []
+    cache.write("a", b"0" * 5000, {})
+    assert cache.read("a") == (b"0" * 5000, {})

@@ -11,7 +11,7 @@ from support.caveat_runs import signals, stacked
 from support.engines import ASKED
 
 from runner.config.judgement import THRESHOLDS, CaveatsConfig
-from runner.metrics.caveats import plant_error
+from runner.metrics.caveats import plant_error, rounding
 from runner.metrics.caveats.monitor import Watch, look_together
 from runner.metrics.caveats.setting import Signals, setting_of, signals_of
 from runner.metrics.caveats.setting_rules import SETTING_RULES
@@ -23,7 +23,7 @@ ROBOTS = ("macro", "mini", "combined", "macro_mini_mini", "xarm7", "xarm7_mini",
 
 
 def test_every_rule_has_a_threshold_of_its_own():
-    rules = [rule.name for rule in (*TRACE_RULES, *SETTING_RULES)] + [plant_error.NAME]
+    rules = [rule.name for rule in (*TRACE_RULES, *SETTING_RULES)] + [plant_error.NAME, rounding.NAME]
     keys = {name: tuple(values) for name, values in our_thresholds().items()}
     assert keys == {name: (key,) for name, (key, *_) in THRESHOLDS.items()}
     assert sorted(CaveatsConfig.model_fields) == sorted(rules)
@@ -44,11 +44,13 @@ def test_runs_side_by_side_are_judged_as_one_after_another(checked_config):
             tau=np.clip(generator.normal(0.0, spread, (100, 3)), -10.0, 10.0),
             tip=generator.normal(0.0, 0.1 * spread, (101, 3)),
             q=generator.normal(0.0, 100.0 * spread, (101, 3)),
+            dq=generator.normal(0.0, 10.0 * spread, (101, 3)),
             desired=np.linspace(0.0, 1.0, 101)[:, None] * np.ones(3),
         )
         for spread in (1.0, 5.0, 9.0, 40.0)
     ]
-    one, several = (Watch(setting_of(config), config.caveats) for _ in range(2))
+    setting = replace(setting_of(config), velocity_limits=np.full(3, 30.0))
+    one, several = (Watch(setting, config.caveats) for _ in range(2))
     for run in runs:
         one.look(run)
     several.look(stacked(*runs))
@@ -65,6 +67,7 @@ def some_signals(limit, seed=0):
         tau=np.clip(generator.normal(0.0, spread, (100, 3)), -limits, limits),
         tip=generator.normal(0.0, 0.1 * spread, (101, 3)),
         q=generator.normal(0.0, 100.0 * spread, (101, 3)),
+        dq=generator.normal(0.0, 10.0 * spread, (101, 3)),
         desired=np.linspace(0.0, 1.0, 101)[:, None] * np.ones(3),
         limits=limits,
     )
@@ -74,7 +77,8 @@ def some_signals(limit, seed=0):
 def test_runs_with_limits_and_thresholds_of_their_own_are_judged_as_each_alone(checked_config, trajectory):
     config = checked_config("robot=macro", f"trajectory={trajectory}", "noise.position=1e-3")
     limits = [2.0, np.inf, 10.0, 0.3, 8.0, 1.0, 20.0]
-    settings = [replace(setting_of(config), torque_limits=np.full(3, limit)) for limit in limits]
+    speeds = {"velocity_limits": np.full(3, 30.0)}
+    settings = [replace(setting_of(config), torque_limits=np.full(3, limit), **speeds) for limit in limits]
     thresholds = [
         config.caveats.model_copy(update={"saturation": config.caveats.saturation.model_copy(update={"share": share})})
         for share in (0.1, 0.0, 0.9, 0.5, 0.1, 0.1, 0.1)

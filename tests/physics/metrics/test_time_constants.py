@@ -2,12 +2,14 @@
 
 import math
 from dataclasses import replace
+from types import ModuleType
 
 import numpy as np
 import pytest
 from scipy.linalg import expm
 
 from runner.controllers import CONTROLLERS
+from runner.controllers.joint_space.computed_torque import ComputedTorqueConfig
 from runner.controllers.torque_law import PinocchioArm
 from runner.metrics.caveats.time_constants import slowest_part
 
@@ -90,9 +92,16 @@ def test_what_never_fades_has_none(checked_config):
     assert slowest_part(checked_config("robot=macro", "controller=impedance")) is None
 
 
-def test_a_law_from_outside_has_that_of_its_observer_alone(checked_config, monkeypatch):
-    monkeypatch.setattr(CONTROLLERS, "is_ours", lambda kind: False)
+class Derived(ComputedTorqueConfig):
+    """Config of another law, derived from that of a law whose time constants are known."""
+
+
+@pytest.mark.parametrize("model", [ComputedTorqueConfig, Derived])
+def test_another_law_with_such_a_config_has_that_of_its_observer_alone(checked_config, monkeypatch, model):
     config = checked_config(*REST, *SLOW[2][2:])
+    other = ModuleType(Derived.__module__)  # a module that uses the config of another, and one with its own
+    monkeypatch.setattr(CONTROLLERS, "module", lambda kind: other)
+    config = replace(config, controller=model(**config.controller.model_dump()))
     assert slowest_part(config) == (0.25, "disturbance observer")
     unseen = config.disturbance_observer.model_copy(update={"bandwidth": None})
     assert slowest_part(replace(config, disturbance_observer=unseen)) is None

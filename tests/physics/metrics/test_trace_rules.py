@@ -68,6 +68,26 @@ def test_a_run_on_rk4_passes_a_limit_and_says_so(make_run):
     assert "joint_limits" in {caveat["rule"] for caveat in run.caveats}
 
 
+def test_a_joint_beyond_its_speed_limit_has_a_caveat_on_a_plant_of_torques(make_run):
+    """12 rad/s at a limit of 0.5 rad/s passed without a word."""
+    fast = ("robot=macro", "trajectory=quintic", "trajectory.duration=1", "plant=rk4", "duration=1")
+    limits = "robot.velocity_limits={q1: 0.5, q2: 0.5, q3: 0.5}"
+    run, free = make_run(*fast, limits), make_run(*fast)
+    peaks = [run.metrics[f"peak_joint_speed_q{joint}"].median for joint in (1, 2, 3)]
+    (caveat,) = [each for each in run.caveats if each["rule"] == "joint_speed"]
+    assert caveat["value"] == pytest.approx(np.max(peaks) / 0.5, rel=1e-6)
+    assert "times its speed limit, 0.5 rad/s, which the plant rk4 does not enforce" in caveat["text"]
+    assert "joint_speed" not in {each["rule"] for each in free.caveats}
+
+
+def test_a_joint_at_its_speed_limit_has_no_caveat_and_0_is_no_limit(path):
+    limits = np.array([2.0, 0.0, np.inf])
+    moving = signals(dq=np.ones((101, 3)) * [-2.0 * (1.0 + 1e-12), 9.0, 9.0])
+    assert found(path, moving, velocity_limits=limits) == {}
+    caveat = found(path, signals(dq=np.ones((101, 3)) * [-2.1, 9.0, 9.0]), velocity_limits=limits)["joint_speed"]
+    assert caveat.value == pytest.approx(1.05)
+
+
 LIMITS = np.array([10.0, 10.0, 10.0])
 
 

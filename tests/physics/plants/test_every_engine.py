@@ -219,7 +219,7 @@ def test_a_tool_at_rest_on_a_wall_is_held_by_stiffness_times_depth(simulated, ch
 
 
 @pytest.mark.parametrize("steps", [1, 4, 10])
-@pytest.mark.parametrize("name", ["bullet", "mujoco", "mujoco implicitfast", "mujoco rk4"])
+@pytest.mark.parametrize("name", ["bullet", "mujoco", "mujoco rk4"])
 def test_a_wall_pushes_by_stiffness_times_depth_whatever_the_steps_of_a_tick(closed_loop, name, steps):
     wall = ("environment=wall", "environment.distance=-0.001", "environment.stiffness=3000", "environment.damping=0")
     timing = (f"plant.step={1e-4 / steps}", "controller.period=1e-4")

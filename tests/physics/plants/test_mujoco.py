@@ -121,7 +121,7 @@ def test_the_default_step_is_that_of_bullet():
 @pytest.mark.parametrize(
     ("override", "message"),
     [
-        ("plant.integrator=leapfrog", "plant.integrator: found 'leapfrog'; allowed: euler, implicitfast, rk4"),
+        ("plant.integrator=leapfrog", "plant.integrator: found 'leapfrog'; allowed: euler, rk4"),
         ("plant.min_inertia=0", "plant.min_inertia: must be 1e-12 or more; found 0"),
         ("plant.mass=1", "plant.mass: unknown key"),
     ],

@@ -212,7 +212,7 @@ def found(controller, joints=3):
     loop = Loop("whole", slice(0, joints), 0.01, controller)
     timing, limits = SimpleNamespace(tick=0.01), TorqueLimits.constant(np.full(joints, np.inf))
     config = SimpleNamespace(
-        arm=robot, ignore_base_rotation=False, timing=timing, encoder_noise=exact, torque_limits=limits
+        arm=robot, ignore_base_rotation=False, timing=timing, encoder_noise=exact, torque_limits=limits, interpreted=[]
     )
     return loops.find_commands(config, [loop])
 

@@ -85,3 +85,18 @@ def test_aliases_count_as_what_they_stand_for():
 
 def test_a_config_may_hold_thousands_of_way_points():
     check_yaml("points:\n" + "- [0.123456, 0.234567, 0.345678]\n" * 2400, "f", CONFIG)
+
+
+@pytest.mark.parametrize(
+    ("text", "number"), [("010", 8), ("1:30", 90), ("1:0.01", 60.01), ("0x10", 16), ("0b101", 5), ("-012", -10)]
+)
+def test_a_number_of_another_base_is_refused_with_what_it_is(text, number):
+    with pytest.raises(
+        YamlError, match=rf"^mine, line 2: {text} is not a decimal number, and YAML reads it as {number}; "
+    ):
+        read_yaml(f"a: 1\nb: [{text}]", "mine")
+
+
+@pytest.mark.parametrize("text", ["'010'", '"1:30"', "1_000", "0", "0.5", "1e-3", "08", "12:90", "1.5:3x"])
+def test_other_scalars_are_read(text):
+    assert read_yaml(f"a: {text}", "mine")["a"] == yaml.safe_load(text)

@@ -11,6 +11,7 @@ from runner.config.groups import GROUPS
 from runner.config.json_schema import json_schema
 
 FILES = [path for group in GROUPS for path in sorted((conf_dir() / group).glob("*.yaml"))]
+NEEDS = {"bullet": pytest.mark.bullet}  # the schema names the plants that are installed
 
 
 def misfit(value, schema, place=""):
@@ -39,7 +40,10 @@ def misfit(value, schema, place=""):
     return ""
 
 
-@pytest.mark.parametrize("path", FILES, ids=lambda path: f"{path.parent.name}/{path.stem}")
+@pytest.mark.parametrize(
+    "path",
+    [pytest.param(path, id=f"{path.parent.name}/{path.stem}", marks=NEEDS.get(path.stem, ())) for path in FILES],
+)
 def test_our_files_fit(path):
     text = path.read_text()
     values = yaml.safe_load(text) or {}

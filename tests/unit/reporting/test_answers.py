@@ -14,9 +14,9 @@ N = 8
 APART = np.linspace(0.9, 1.1, N)  # differences of one sign
 
 
-def asked(differences, metric="rms_tracking_error", size=1.0, unit="m", error=None):
+def asked(differences, metric="rms_tracking_error", size=1.0, unit="m", error=None, rounding=0.0):
     a = np.full(len(differences), size)
-    return Asked(metric, unit, replace(compare_paired(a, a + differences), error=error))
+    return Asked(metric, unit, replace(compare_paired(a, a + differences), error=error, rounding=rounding))
 
 
 def one(*given, **more):
@@ -57,6 +57,26 @@ def test_pairs_that_are_equal_up_to_rounding_say_so():
     assert answer.sentence() == "Rms tracking error: A (1 m) and B (1 m) are equal up to rounding (8 pairs)."
     assert answer.short_cells == ["1 m", "1 m", "0", "equal up to rounding"]
     assert not one(1e-3 * APART).equal
+
+
+def test_pairs_within_what_rounding_changes_are_equal_up_to_rounding():
+    both_ways = 0.0999 * np.array([-1.0, 1.0] * 4)
+    answer = one(both_ways, rounding=0.1)
+    assert answer.sentence() == (
+        "Rms tracking error: A (1 m) and B (1 m) are equal up to rounding, which changes it by 10 % (8 pairs)."
+    )
+    assert answer.short_cells[3] == "equal up to rounding, which changes it by 10 %"
+    assert not one(both_ways, rounding=0.09).equal
+    assert not one(both_ways).equal
+    few = one(0.05 * APART[:1], rounding=0.1)
+    assert few.equal
+    assert few.short_cells[2] == "0.045 m"  # the difference itself, which is not small
+
+
+def test_a_difference_of_one_sign_is_more_than_rounding():
+    """Rounding changes draws in both directions, so that the test of the signs stays valid."""
+    answer = one(0.1 * APART, rounding=0.2)
+    assert (answer.word, answer.within_rounding, answer.equal) == ("larger", True, False)
 
 
 def test_rounding_of_nothing_is_no_answer():

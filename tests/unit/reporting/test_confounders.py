@@ -4,6 +4,7 @@ from dataclasses import replace
 
 from support.sample_sides import LAWS, side
 
+from runner.base.machine import Machine
 from runner.reporting.comparison.differences import ABSENT, Value, find_differences
 from runner.reporting.comparison.pairs import match
 
@@ -79,5 +80,42 @@ def test_a_value_that_one_lacks_is_absent():
 
 def test_commits_and_versions_are_told():
     a, b = side("A", LAWS, nothing), side("B", LAWS, nothing)
-    made = {**b.provenance, "commit": ["def"], "machine": ["another"], "made on": ["2027-01-01"]}
-    assert list(found(a, replace(b, provenance=made)).provenance) == [Value("commit", "abc", "def")]
+    made = {**b.provenance, "commit": ["def"], "made on": ["2027-01-01"]}
+    differences = found(a, replace(b, provenance=made))
+    assert list(differences.provenance) == [Value("commit", "abc", "def")]
+    assert differences.in_words("A", "B") == "A and B differ in no value."
+
+
+def made_by(name, *machines, **provenance):
+    one = side(name, LAWS, nothing)
+    texts = [machine.text for machine in machines]
+    return replace(one, provenance={**one.provenance, "machine": texts, **provenance}, machines=machines)
+
+
+ALPHA = Machine("Alpha", "Linux", "x86-64-v4", openblas="SkylakeX")
+BETA = replace(ALPHA, level="x86-64-v3", openblas="Haswell")
+
+
+def test_the_machine_is_named_where_nothing_else_differs():
+    a, b = made_by("A", ALPHA), made_by("B", BETA)
+    expected = "x86-64-v4, OpenBLAS SkylakeX against x86-64-v3, OpenBLAS Haswell"
+    assert found(a, b).in_words("A", "B") == (
+        f"A and B differ only in the machine: {expected}. What follows may be rounding, which can grow."
+    )
+    newer = made_by("B", BETA, commit=["def"])
+    assert found(a, newer).in_words("A", "B") == (
+        f"A and B differ in no value, but in the machine ({expected}) and in commit."
+    )
+    assert found(a, a).in_words("A", "B") == "A and B differ in no value."
+
+
+def test_machines_whose_parts_are_unknown_are_no_difference():
+    a, b = made_by("A", ALPHA), made_by("B", Machine("Alpha", "Linux"))
+    assert list(found(a, b).provenance) == []
+
+
+def test_a_side_of_two_machines_has_them_in_a_list_without_commas_in_commas():
+    (value,) = found(made_by("A", ALPHA), made_by("B", ALPHA, BETA)).provenance
+    assert (value.a, value.b) == (
+        "x86-64-v4, OpenBLAS SkylakeX", "x86-64-v3, OpenBLAS Haswell; x86-64-v4, OpenBLAS SkylakeX",
+    )  # fmt: skip

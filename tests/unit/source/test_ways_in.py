@@ -17,9 +17,9 @@ TEST = re.compile(r"`(tests/[\w/]+\.py)::(test_\w+)`")
 READING = {
     "read_text", "read_bytes", "fromstring", "XMLParser", "ParquetFile", "from_file", "from_string", "loadURDF",
     "buildModelFromXML", "optuna.load_study", "Client", "read_csv", "read_parquet", "from_xml_path", "from_xml_string",
-    "yaml.load", "yaml.safe_load", "yaml.parse", "json.load", "json.loads", "pickle.load", "pickle.loads", "np.load",
-    "OmegaConf.load", "ast.parse", "csv.reader", "ET.parse", "importlib.import_module", "os.environ", "os.getenv",
-    "deserialize_cdr", "sys.argv", "subprocess.run", "subprocess.Popen",
+    "yaml.load", "yaml.safe_load", "yaml.parse", "json.load", "json.loads", "decode_json", "pickle.load",
+    "pickle.loads", "np.load", "OmegaConf.load", "ast.parse", "csv.reader", "ET.parse", "importlib.import_module",
+    "os.environ", "os.getenv", "deserialize_cdr", "sys.argv", "subprocess.run", "subprocess.Popen",
     "os.popen", "os.system", "eval", "exec", "urlopen", "create_connection",
 }  # fmt: skip
 """Names and attributes that read a file, parse a string, ask the environment, start a program or connect to one."""

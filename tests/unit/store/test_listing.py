@@ -48,7 +48,8 @@ def test_the_newest_comes_first_with_kind_and_size(outputs):
 
 
 def test_runs_of_a_sweep_that_stays_are_kept(outputs):
-    found = removable(list_entries(outputs), 1.5e9)
+    found, why = removable(list_entries(outputs), 1.5e9)
+    assert why == []
     assert sorted(entry.folder.name[:1] for entry in found if entry.kind == "run") == ["1", "3"]
     assert [entry.kind for entry in found].count("sweep") == 1
     remove(found)
@@ -58,18 +59,24 @@ def test_runs_of_a_sweep_that_stays_are_kept(outputs):
     assert (outputs / "runs" / "notes").exists()
 
 
-def test_a_damaged_sweep_that_stays_stops_the_removal(outputs):
+def test_a_damaged_sweep_that_stays_keeps_all_runs(outputs):
     for folder in (outputs / "sweeps").iterdir():
         (folder / "sweep.json").write_text("{}")
         os.utime(folder / "sweep.json", (NEW, NEW))
-    with pytest.raises(StoreError):
-        removable(list_entries(outputs), 1.5e9)
+    found, why = removable(list_entries(outputs), 1.5e9)
+    assert not [entry for entry in found if entry.kind == "run"]
+    assert [each.rpartition(". ")[2] for each in why] == ["Its runs are not known, and no run is removed"] * 2
 
 
 def test_a_link_is_not_followed(outputs, tmp_path_factory):
     elsewhere = run_of(tmp_path_factory.mktemp("elsewhere"), "4" * 24, OLD)
-    (outputs / "runs" / ("4" * 24)).symlink_to(elsewhere)
-    remove([entry for entry in list_entries(outputs) if entry.folder.name != "4" * 24])
+    link = outputs / "runs" / ("4" * 24)
+    link.symlink_to(elsewhere)
+    found, why = removable(list_entries(outputs), 1.5e9)
+    assert why == [f"{link}: it is a link, and nothing that it leads to is removed"]
+    assert link not in [entry.folder for entry in found]
+    with pytest.raises(StoreError, match=r"cannot remove \S+: Cannot call rmtree on a symbolic link"):
+        remove([entry for entry in list_entries(outputs) if entry.folder == link])
     assert (elsewhere / "config.yaml").exists()
 
 

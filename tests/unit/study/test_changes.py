@@ -78,6 +78,25 @@ def test_numbers_that_moved_most_come_first(new):
         "tool errors x median (m)",
         "goal settling_time median (s)",
     ]
+    assert [change.kind for change in changes(OLD, new)] == ["number"] * 4 + ["rounding"]
+
+
+@pytest.mark.parametrize(
+    ("old", "new_value", "kind"),
+    [
+        (1.3, 1.3 * (1 + 0.9e-6), "rounding"),
+        (1.3, 1.3 * (1 + 1.1e-6), "number"),
+        (0.0, 0.9e-12, "rounding"),
+        (0.0, 1.1e-12, "number"),
+        (1.3, None, "number"),
+        (None, 1.3, "number"),
+    ],
+)
+def test_a_number_that_moves_by_rounding_is_of_its_own_kind(new, old, new_value, kind):
+    before, after = copy.deepcopy(new), new
+    for content, value in ((before, old), (after, new_value)):
+        content["thesis"]["numbers"]["goal"]["metrics"]["settling_time"]["median"] = value
+    assert [change.kind for change in changes(before, after)] == [kind]
 
 
 def test_the_size_of_a_change_is_a_share():

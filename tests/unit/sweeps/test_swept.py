@@ -38,7 +38,7 @@ def test_options_of_groups_are_told_from_values():
         False,
         False,
         True,
-        True,
+        False,
     ]
     assert "macro" in keys("robot=glob(m*)")[0].values
 
@@ -83,3 +83,69 @@ def test_a_quantity_that_does_not_fit_stays_as_typed():
     assert sweep.overrides(1) == ("robot=macro", "controller.period=5mm")
     assert sweep.composed(1).resolved["controller"]["period"] == "5mm"
     assert sweep.composed(0).resolved["controller"]["period"] == 0.005
+
+
+@pytest.mark.parametrize(
+    ("argument", "values"),
+    [
+        ("noise.position=range(0.1,0.4,0.1)", [0.1, 0.2, 0.3]),
+        ("noise.position=range(0,1,0.1)", [0.0, 0.1, 0.2, 0.3, 0.4, 0.5, 0.6, 0.7, 0.8, 0.9]),
+        ("noise.position=range(0.3,0,-0.1)", [0.3, 0.2, 0.1]),
+        ("noise.position=range(1e-4,5e-4,1e-4)", [1e-4, 2e-4, 3e-4, 4e-4]),
+        ("noise.position=range(1.0,3)", [1.0, 2.0]),
+        ("controller.period=range(5ms,20ms,5ms)", [0.005, 0.01, 0.015]),
+        ("controller.period=range(0.1,0.05,0.01)", None),
+        ("seed=range(0,2.5)", [0, 1, 2]),
+        ("seed=range(5,0,-2)", [5, 3, 1]),
+    ],
+)
+def test_ranges_are_counted_in_decimal_without_their_stop(argument, values):
+    if values is None:
+        with pytest.raises(ConfigError, match="is swept over no value"):
+            keys(argument)
+        return
+    (key,) = keys(argument)
+    assert repr(list(key.values)) == repr(values)
+
+
+def test_whole_numbers_are_not_written_out():
+    assert [keys(text)[0].values for text in ("seed=range(0,1000000,7)", "seed=range(9,0.5,-2)")] == [
+        range(0, 1_000_000, 7),
+        range(9, 0, -2),
+    ]
+
+
+@pytest.mark.parametrize(
+    ("argument", "values"),
+    [
+        ("controller.period=sort(20ms,5ms,10ms)", [0.005, 0.01, 0.02]),
+        ("controller.period=sort(20ms,0.005,10ms,reverse=true)", [0.02, 0.01, 0.005]),
+        ("controller.period=sort(choice(20ms,5ms))", [0.005, 0.02]),
+        ("robot.name=sort(30m,4m)", ["30m", "4m"]),  # names, not lengths
+        ("seed=sort(10,9)", [9, 10]),
+    ],
+)
+def test_sorted_values_are_numbers(argument, values):
+    assert keys(argument)[0].values == values
+
+
+@pytest.mark.parametrize(
+    "argument", ["controller.period=shuffle(20ms,0.01)", "controller.period=shuffle(range(10ms,30ms,10ms))"]
+)
+def test_shuffled_values_are_numbers(argument):
+    assert sorted(keys(argument)[0].values) == [0.01, 0.02]
+
+
+def test_a_unit_that_does_not_fit_is_not_sorted():
+    with pytest.raises(ConfigError, match=r"controller\.period: must be a number, or one with a unit of s"):
+        keys("controller.period=sort(5ms,5mm)")
+
+
+@pytest.mark.parametrize(
+    "argument", ["seed=range(0,1,0)", "seed=range(0,nan)", "seed=range(0,-inf)", "seed=range(nan,1,0.1)"]
+)
+def test_a_range_has_a_step_and_finite_ends(argument):
+    with pytest.raises(
+        ConfigError, match=r"seed: the (step of a range must not be 0|ends and the step of a range must be)"
+    ):
+        keys(argument)
