@@ -29,7 +29,7 @@ def print_preview(plan: "Plan", found: "Preview", as_json: bool) -> None:
     if as_json:
         cells = [
             {"overrides": plan.overrides(cell), "run": name, "stored": bool(found.stored[cell])}
-            for cell, name in enumerate(found.names)
+            for cell, name in enumerate(found.checked.names)
         ]
         known = {} if found.expected is None else {"seconds": found.expected.seconds, "known": found.expected.known}
         listed = [{"key": axis.key, "values": list(axis.values)} for axis in axes]

@@ -15,7 +15,7 @@ from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
-from runner.base.errors import RunnerError, StoreError, describe_write_error
+from runner.base.errors import StoreError, TemporaryError, describe_write_error
 from runner.base.quantities import format_duration
 from runner.base.sanitize import few, one_line
 from runner.store.kinds import KINDS
@@ -58,7 +58,7 @@ def at_work(folder: Path, alone: bool = False) -> Iterator[str]:
         A random name of the command, for the names of its files.
 
     Raises:
-        RunnerError: if `alone`, and another command works on it.
+        TemporaryError: if `alone`, and another command works on it.
         StoreError: if the file cannot be written.
     """
     name = secrets.token_hex(4)
@@ -122,7 +122,7 @@ def _lock(path: Path) -> int:
     """Return a locked file, created if it is missing.
 
     Raises:
-        RunnerError: if the command is to be alone, and another one is at work.
+        TemporaryError: if the command is to be alone, and another one is at work.
     """
     deadline = time.monotonic() + _PATIENCE
     while True:
@@ -133,7 +133,7 @@ def _lock(path: Path) -> int:
             return file
         os.close(file)
         if time.monotonic() > deadline:
-            raise RunnerError(
+            raise TemporaryError(
                 f"another command is at work on {path.parent} ({in_words(others)}); wait for it, or choose another "
                 "folder with outputs=FOLDER"
             )

@@ -6,8 +6,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from runner.store.names import Names
-from runner.sweeps.check import check
+from runner.sweeps.check import Checked, check
 from runner.sweeps.deadline import TimeLimitError, deadline
 from runner.sweeps.estimate import Estimate, estimate
 from runner.sweeps.plan import Plan
@@ -21,13 +20,13 @@ class Preview:
     """What a sweep would do.
 
     Attributes:
-        names: Hash of each cell's run.
+        checked: Result of the check of the cells.
         stored: True for each cell whose run is stored, shape (cells,).
         expected: Estimated CPU time of the missing runs; None if the estimate takes too long.
         duration: The expected duration in words; "" if nothing is missing.
     """
 
-    names: Names
+    checked: Checked
     stored: NDArray[np.bool_]
     expected: Estimate | None
     duration: str
@@ -47,10 +46,10 @@ def preview(plan: Plan, engine: Engine) -> Preview:
     missing = {checked.names[cell] for cell in ends.left.tolist()}
     stored &= np.array([name not in missing for name in checked.names], dtype=bool)
     if not len(ends.left):
-        return Preview(checked.names, stored, Estimate(0.0), "")
+        return Preview(checked, stored, Estimate(0.0), "")
     try:
         with deadline(_WITHIN):
             expected = estimate(plan, checked, ends.left, rules.kept, time.monotonic() + _WITHIN)
     except TimeLimitError:
-        return Preview(checked.names, stored, None, f"an unknown time, because an estimate takes over {_WITHIN:g} s")
-    return Preview(checked.names, stored, expected, duration_text(rules, len(ends.left), engine, expected))
+        return Preview(checked, stored, None, f"an unknown time, because an estimate takes over {_WITHIN:g} s")
+    return Preview(checked, stored, expected, duration_text(rules, len(ends.left), engine, expected))

@@ -111,15 +111,22 @@ class Queue:
             known = self._seconds_per_tick
             self._seconds_per_tick = seconds if known is None else 0.5 * (known + seconds)
 
-    def give_back(self, chunk: Chunk) -> list[store.Outcome]:
-        """Mark the unfinished jobs of a chunk with dead workers as suspects; return the outcomes of its stored jobs."""
+    def give_back(self, chunk: Chunk, as_suspects: bool = True) -> list[store.Outcome]:
+        """Queue the unfinished jobs of a chunk again; return the outcomes of its stored jobs.
+
+        Args:
+            chunk: The chunk.
+            as_suspects: True if its worker died: then each unfinished job may be the cause, and is made separately.
+        """
         done = []
         known = find_stored(chunk)
         for name in chunk.names:
             if name in known:
                 done.append(known[name])
-            else:
+            elif as_suspects:
                 self._suspects.append(self._under_way.pop(name))
+            else:
+                self.put(self._under_way.pop(name))
         return done
 
     def _chunk(self, cells: Sequence[int]) -> Chunk:

@@ -16,7 +16,7 @@ from numpy.typing import NDArray
 
 from runner import store
 from runner.base import progress
-from runner.base.errors import ConfigError, StoreError
+from runner.base.errors import ConfigError, TemporaryError
 from runner.base.sanitize import one_line
 from runner.config.compose.composer import Composer
 from runner.config.compose.given_keys import given_keys
@@ -32,12 +32,13 @@ from runner.store.names import Names
 from runner.sweeps.at_work import at_work, commands_at_work, commands_in
 from runner.sweeps.check import Checked, check
 from runner.sweeps.differing import Resolved
-from runner.sweeps.engine import in_process, local_client, on_cluster, remote_client
+from runner.sweeps.engine import in_process, local_client, on_cluster
 from runner.sweeps.estimate import START_UP, Estimate, Pace, estimate
 from runner.sweeps.outcomes import Ends
 from runner.sweeps.part import Part, own_part, share_sweep
 from runner.sweeps.plan import Plan
 from runner.sweeps.queue import Queue
+from runner.sweeps.remote import GO_ON, check_address, remote_workers
 from runner.sweeps.typed import plan_typed
 from runner.sweeps.work import Report, find_calibrated
 from runner.sweeps.writer import Rules, TraceKeeping, one_in
@@ -54,7 +55,8 @@ class Engine:
 
     Attributes:
         workers: Number of worker processes on this machine; 0 for the current process.
-        address: Address of a running Dask scheduler, such as tcp://127.0.0.1:8786; then `workers` has no effect.
+        address: Address of a running Dask scheduler, such as tcp://127.0.0.1:8786, or its scheduler file; then
+            `workers` has no effect.
     """
 
     workers: int
@@ -63,6 +65,8 @@ class Engine:
     def __post_init__(self) -> None:
         if isinstance(self.workers, bool) or not isinstance(self.workers, int) or self.workers < 0:
             raise ConfigError(f"hydra.sweeper.workers: must be a whole number, 0 or more; found {self.workers!r}")
+        if self.address is not None:
+            check_address(self.address)
 
 
 @dataclass(frozen=True)
@@ -133,15 +137,16 @@ def run_sweep(plan: Plan, engine: Engine, command: str, accept_cut_short: bool =
 
     Raises:
         ConfigError: if a cell cannot be run, or the sweep exceeds a limit; no run has been started.
-        StoreError: if a result cannot be written, or a worker fails.
+        StoreError: if the sweep cannot be written.
         RunnerError: if the Dask scheduler does not answer.
+        TemporaryError: if a run cannot be written, or a worker fails; finished runs are stored.
     """
     plan = own_part(plan)
     checked = check(plan)
     names, outputs = checked.names, checked.outputs
     progress.begin("looking for stored runs")
     store.prepare(outputs)
-    folder = share_sweep(plan, checked, command) if isinstance(plan, Part) else _write_sweep(plan, checked, command)
+    folder = share_sweep(plan, checked, command) if isinstance(plan, Part) else write_sweep(plan, checked, command)
     with at_work(folder) as name:
         note(folder)
         rules = make_rules(checked.first.sweep, folder, len(plan.whole), name)
@@ -158,7 +163,7 @@ def make_missing(plan: Plan, checked: Checked, rules: Rules, engine: Engine) -> 
 
     Raises:
         ConfigError: if the jobs exceed a limit of CPU time or memory.
-        StoreError: if a result cannot be written, or a worker fails.
+        TemporaryError: if a result cannot be written, or a worker fails.
     """
     names = checked.names
     ends = find_stored(checked, rules)
@@ -169,7 +174,7 @@ def make_missing(plan: Plan, checked: Checked, rules: Rules, engine: Engine) -> 
         for report in make_jobs(plan, checked, queue, left, engine, stored):
             ends.add(report.outcomes)
             if report.trouble:
-                raise StoreError(f"{report.trouble}; finished runs are stored; the same command continues")
+                raise TemporaryError(f"{report.trouble}; {GO_ON}")
             if rules.stop_at_failure and any(end.failure for end in report.outcomes):
                 break
     except KeyboardInterrupt:  # no worker is left to finish its run
@@ -179,7 +184,7 @@ def make_missing(plan: Plan, checked: Checked, rules: Rules, engine: Engine) -> 
     return ends, stored
 
 
-def _write_sweep(plan: Plan, checked: Checked, command: str) -> Path:
+def write_sweep(plan: Plan, checked: Checked, command: str) -> Path:
     """Store the overrides and the hash of each run; return the sweep's folder."""
     axes = plan.axes()
     if axes is not None:
@@ -286,8 +291,11 @@ def _count(checked: Checked, left: int, stored: int) -> str:
 def _workers(queue: Queue, jobs: int, engine: Engine, expected: Estimate) -> Iterator[Iterator[Report]]:
     """Start the workers of a queue, given its expected CPU time; yield an iterator over the reports of its chunks."""
     if engine.address is not None:
-        with remote_client(engine.address) as client, contextlib.closing(on_cluster(queue, client)) as reports:
-            processes = max(1, len(client.nthreads()))
+        with (
+            remote_workers(engine.address) as remote,
+            contextlib.closing(on_cluster(queue, remote.client, remote)) as reports,
+        ):
+            processes = max(1, len(remote.usable()))
             _tell(expected.in_words(processes, processes))
             yield reports
     elif seconds := _seconds_in_process(queue.rules, min(engine.workers, jobs), expected):

@@ -26,6 +26,7 @@ class Status:
         failed: Number of stored runs that failed.
         caveats: Number of caveats of each stored cell, in the order of the cells.
         left: Number of missing runs.
+        missing: Cells whose run is missing, ascending.
         at_work: Commands that work on the sweep.
         seconds: Remaining time at the last recorded pace of the commands at work, in s; None if no pace is recorded.
         damage: Messages on damaged files, one for each file.
@@ -36,6 +37,7 @@ class Status:
     failed: int
     caveats: Sequence[int]
     left: int
+    missing: Sequence[int]
     at_work: Sequence[Command]
     seconds: float | None
     damage: Sequence[str]
@@ -62,11 +64,28 @@ def find_status(sweep: Sweep) -> Status:
         failed=sum(bool(end.failure) for end in stored),
         caveats=[end.caveats for name in sweep.hashes if (end := ends[name]) is not None],
         left=left,
+        missing=[cell for cell, name in enumerate(sweep.hashes) if ends[name] is None],
         at_work=at_work,
         seconds=None if pace is None else pace * left / max(1, len(at_work)),
         damage=finished.damage,
         machines=Counter(end.machine for end in stored),
     )
+
+
+def parts_of(cells: Sequence[int], parts: int) -> list[int]:
+    """Return the numbers of the parts of a sweep that contain some of the given cells, ascending; see sweep.part."""
+    return sorted({cell % parts for cell in cells})
+
+
+def in_ranges(numbers: Sequence[int]) -> str:
+    """Return ascending numbers as Slurm takes them for an array, such as "3,17,40-42"."""
+    runs: list[list[int]] = []
+    for number in numbers:
+        if runs and number == runs[-1][-1] + 1:
+            runs[-1].append(number)
+        else:
+            runs.append([number])
+    return ",".join(f"{run[0]}-{run[-1]}" if len(run) > 1 else str(run[0]) for run in runs)
 
 
 def read_pace(folder: Path) -> float | None:

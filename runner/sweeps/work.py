@@ -78,11 +78,15 @@ class Report:
         outcomes: Outcomes of the jobs, including cached ones.
         trouble: Reason why the chunk stopped early, if other runs would fail for the same reason; empty otherwise.
         seconds: Wall-clock time of the chunk, in s.
+        host: Name of the machine that executed the chunk; empty for the process of the command.
+        worker: Address of the worker that executed the chunk; empty for the process of the command.
     """
 
     outcomes: Sequence[store.Outcome]
     trouble: str
     seconds: float
+    host: str = ""
+    worker: str = ""
 
 
 def dask_setup(_worker: object) -> None:

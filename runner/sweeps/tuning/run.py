@@ -11,7 +11,7 @@ from hydra.core.override_parser.overrides_parser import OverridesParser
 
 from runner import store
 from runner.base.dotted_keys import get
-from runner.base.errors import ConfigError, RunnerError, StoreError
+from runner.base.errors import ConfigError, RunnerError, TemporaryError
 from runner.base.limits import TRIALS
 from runner.config.compose.composer import Composer
 from runner.config.compose.composition_errors import COMPOSITION_ERRORS, explain
@@ -56,7 +56,7 @@ def tune(
         ConfigError: if a key cannot be tuned, or a config in its range cannot be run; no trial has been started.
         RunnerError: if there are too many trials, a run lacks a metric, another command works on the tuning, or the
             Dask scheduler does not answer.
-        StoreError: if a result cannot be written, or a worker fails.
+        TemporaryError: if a result cannot be written, or a worker fails.
     """
     if excess := TRIALS.excess(trials):
         raise RunnerError(f"the tuning {excess}; take fewer")
@@ -96,7 +96,7 @@ def _work_off(plan: Plan, checked: Checked, queue: TrialQueue, engine: Engine, e
     while queue.left:
         for report in make_jobs(plan, checked, queue, np.zeros(queue.left, dtype=np.intp), engine, ended):
             if report.trouble:
-                raise StoreError(f"{report.trouble}; finished trials are stored; the same command continues")
+                raise TemporaryError(f"{report.trouble}; finished trials are stored; the same command continues")
             queue.note(report.outcomes)
             if queue.rules.stop_at_failure and any(end.failure for end in report.outcomes):
                 return

@@ -300,7 +300,7 @@ def test_a_number_of_workers_that_is_none_is_said(workers):
 
 
 def test_a_scheduler_that_does_not_answer_is_named(sweep, monkeypatch):
-    monkeypatch.setattr("runner.sweeps.engine._ANSWER_WITHIN", 0.5)
+    monkeypatch.setattr("runner.sweeps.remote._ANSWER_WITHIN", 0.5)
     with pytest.raises(RunnerError, match=r"no Dask scheduler answers at tcp://127\.0\.0\.1:9; start one with `dask"):
         sweep("seed=0,1", engine=Engine(2, "tcp://127.0.0.1:9"))
 
