@@ -18,7 +18,7 @@ from typing import Any
 from runner.base.errors import RunnerError, TemporaryError
 from runner.sweeps.deadline import STUCK
 from runner.sweeps.queue import Queue
-from runner.sweeps.remote import GO_ON, Remote, in_place
+from runner.sweeps.remote import GO_ON, Remote, hush, in_place
 from runner.sweeps.work import Chunk, Report, give_up, work
 
 _DEATHS = 3  # worker deaths during one run before the run counts as the cause
@@ -150,12 +150,6 @@ def _give_up(chunk: Chunk) -> Report:
     return give_up(chunk, reason)
 
 
-def _hush() -> None:
-    """Silence Dask's log; the runner reports the relevant events as failures of runs or errors."""
-    for part in ("", ".client", ".core", ".nanny", ".scheduler", ".worker"):
-        logging.getLogger(f"distributed{part}").setLevel(logging.CRITICAL)
-
-
 @contextlib.contextmanager
 def local_client(workers: int, scratch: Path) -> Iterator[Any]:
     """Start a cluster of single-threaded processes on this machine; yield its `distributed.Client`.
@@ -174,7 +168,7 @@ def local_client(workers: int, scratch: Path) -> Iterator[Any]:
     from distributed import Client
 
     scratch.mkdir(parents=True, exist_ok=True)
-    _hush()
+    hush()
     settings = {
         "distributed.scheduler.allowed-failures": _DEATHS,
         # A dead worker is restarted. By default, Dask drops a worker that is down 15 s after an earlier death.

@@ -77,7 +77,8 @@ class Queue:
             return None
         stop = start + 1
         if self._seconds_per_tick is not None:
-            fair = (ticks[-1] - ticks[stop]) / (2 * workers)
+            left = ticks[-1] - ticks[start]
+            fair = left if workers == 1 else (ticks[-1] - ticks[stop]) / (2 * workers)
             budget = min(_SECONDS_PER_CHUNK / self._seconds_per_tick, fair)
             affordable = int(np.searchsorted(ticks, ticks[start] + budget, side="right")) - 1
             stop = min(max(affordable, start + self._fewest, stop), start + _LARGEST, len(self._cells))

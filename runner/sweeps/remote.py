@@ -1,6 +1,7 @@
 """Workers of a running Dask scheduler: its address, the check of its workers, and those that a command leaves out."""
 
 import contextlib
+import logging
 import os
 import re
 import socket
@@ -89,6 +90,7 @@ def remote_workers(given: str) -> Iterator[Remote]:
     file = given if given.endswith(_FILE) else ""
     address, within = (_read_address(Path(file).expanduser()), _BEGIN_WITHIN) if file else (given, _ANSWER_WITHIN)
     start = _how_to_start(file, address)
+    hush()
     try:
         with warnings.catch_warnings():  # _check_workers says it
             warnings.simplefilter("ignore", VersionMismatchWarning)
@@ -186,3 +188,9 @@ def _warn(text: str) -> None:
 def in_place(trouble: str, host: str, address: str) -> str:
     """Return a message about a worker with its host and address."""
     return f"{trouble} ({', '.join(filter(None, (host, address)))})"
+
+
+def hush() -> None:
+    """Silence Dask's log; the runner reports the relevant events as failures of runs or errors."""
+    for part in ("", ".client", ".core", ".nanny", ".scheduler", ".worker"):
+        logging.getLogger(f"distributed{part}").setLevel(logging.CRITICAL)
