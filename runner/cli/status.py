@@ -61,6 +61,6 @@ def _check_parts(sweep: "Sweep", parts: int) -> None:
     from runner.store.axes import Axes
 
     if not isinstance(sweep.overrides, Axes):
-        raise RunnerError(f"--parts: {sweep.folder} is no sweep of `runner -m`, and has no parts.")
+        raise RunnerError(f"--parts: only a sweep of `runner -m` has parts ({sweep.folder}).")
     if parts > len(sweep.hashes):
         raise RunnerError(f"--parts: more parts than cells ({parts}). Allowed: 1 to {len(sweep.hashes)}.")

@@ -20,7 +20,7 @@ from runner.base.quantities import format_duration
 from runner.base.sanitize import few, one_line
 from runner.store.kinds import KINDS
 
-_START, _ALONE = "at_work-", "alone"
+_START, _EXCLUSIVE = "at_work-", "exclusive"
 _EVERY = 2.0  # s between two signs
 _YOUNG = 120.0  # s; a network file system shows the sign of another machine up to a minute late
 _PATIENCE = 1.0  # s; `runner status` holds a lock for an instant
@@ -47,22 +47,22 @@ class Command:
 
 
 @contextlib.contextmanager
-def at_work(folder: Path, alone: bool = False) -> Iterator[str]:
+def at_work(folder: Path, exclusive: bool = False) -> Iterator[str]:
     """Record that this command works on a sweep or tuning; the record ends with the process, even if that is killed.
 
     Args:
         folder: Folder of the sweep or tuning.
-        alone: True if no other command may work on it.
+        exclusive: True if no other command may work on it.
 
     Yields:
         A random name of the command, for the names of its files.
 
     Raises:
-        TemporaryError: if `alone`, and another command works on it.
+        TemporaryError: if `exclusive`, and another command works on it.
         StoreError: if the file cannot be written.
     """
     name = secrets.token_hex(4)
-    path = folder / f"{_START}{_ALONE if alone else name}"
+    path = folder / f"{_START}{_EXCLUSIVE if exclusive else name}"
     try:
         folder.mkdir(parents=True, exist_ok=True)
         _remove_dead(folder)
@@ -122,11 +122,11 @@ def _lock(path: Path) -> int:
     """Return a locked file, created if it is missing.
 
     Raises:
-        TemporaryError: if the command is to be alone, and another one is at work.
+        TemporaryError: if the command is to be exclusive, and another one is at work.
     """
     deadline = time.monotonic() + _PATIENCE
     while True:
-        others = commands_at_work(path.parent) if path.name == _START + _ALONE else ()
+        others = commands_at_work(path.parent) if path.name == _START + _EXCLUSIVE else ()
         file = os.open(path, os.O_RDWR | os.O_CREAT, 0o666)
         if not others and _try(file, fcntl.LOCK_EX) and os.fstat(file).st_nlink:
             os.ftruncate(file, 0)

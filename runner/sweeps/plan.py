@@ -72,7 +72,7 @@ class Plan(ABC):
 
     @property
     def whole(self) -> "Plan":
-        """The plan of the whole sweep, of which this one may be a part."""
+        """The plan of the whole sweep; the plan itself if it is not a part."""
         return self
 
     @abstractmethod

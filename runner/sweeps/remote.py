@@ -23,7 +23,7 @@ from runner.store.physics import physics_digest
 _ADDRESS = re.compile(r"(\w+://)?[^\s/]+:\d+")
 _FILE = ".json"
 _ANSWER_WITHIN = 10.0  # s, for a scheduler, and for the workers of one that is given by its address
-_BEGIN_WITHIN = 60.0  # s, for a scheduler file and for the first worker: a job starts both beside the command
+_BEGIN_WITHIN = 60.0  # s, for a scheduler file and for the first worker: a job starts both with the command
 _LOOK_EVERY = 0.2  # s, for a scheduler file
 _SAME = "install the same version of the runner for the command, the scheduler and all workers"
 GO_ON = "finished runs are stored; the same command continues"
@@ -131,7 +131,9 @@ def _read_address(file: Path) -> str:
             break
         time.sleep(_LOOK_EVERY)
     if file.exists():
-        raise RunnerError(f"hydra.sweeper.address: {file} is no scheduler file of Dask; {_how_to_start(str(file), '')}")
+        raise RunnerError(
+            f"hydra.sweeper.address: {file} is not a scheduler file of Dask; {_how_to_start(str(file), '')}"
+        )
     raise TemporaryError(
         f"hydra.sweeper.address: no scheduler has written {file} within {_BEGIN_WITHIN:g} s; "
         f"{_how_to_start(str(file), '')}"
@@ -153,14 +155,14 @@ def _check_workers(remote: Remote) -> None:
     found = remote.client.run(_describe, on_error="return")
     other: dict[str, list[str]] = {}
     reason = ""
-    for address, told in found.items():
-        if isinstance(told, BaseException):
-            reason = f"{in_place('a worker cannot execute runs', '', address)}: {told}"
-        elif told[1] != physics_digest():
-            reason = in_place("a worker has other source code than the command", told[0], address)
+    for address, answer in found.items():
+        if isinstance(answer, BaseException):
+            reason = f"{in_place('a worker cannot execute runs', '', address)}: {answer}"
+        elif answer[1] != physics_digest():
+            reason = in_place("a worker has other source code than the command", answer[0], address)
         else:
-            if difference := _difference(told[2]):
-                other.setdefault(difference, []).append(f"{told[0]}, {address}")
+            if difference := _difference(answer[2]):
+                other.setdefault(difference, []).append(f"{answer[0]}, {address}")
             continue
         remote.leave_out(address, reason)
     if found and not remote.usable():

@@ -100,7 +100,7 @@ def plan_job_array(plan: Plan, engine: Engine, parts: int, words: Sequence[str])
 def _time(found: Preview, parts: int, cpus: int) -> tuple[str, str]:
     """Return a sentence on the time limit of a task, and its line."""
     if found.expected is None:
-        return "There is no time limit, because an estimate takes too long. Add --time.", ""
+        return "No time limit is set, because an estimate takes too long. Add --time.", ""
     costs = np.where(found.stored, 0, found.checked.costs)
     longest = max(float(costs[part::parts].sum()) / cpus for part in range(parts))
     seconds = found.expected.seconds * max(longest, float(costs.max())) / max(float(costs.sum()), 1.0)

@@ -67,7 +67,7 @@ def preload(tmp_path):
 
 @pytest.mark.costs(4)
 @pytest.mark.parametrize(
-    ("source", "told"),
+    ("source", "message"),
     [
         (
             READ_ONLY,
@@ -78,7 +78,9 @@ def preload(tmp_path):
     ],
     ids=["read-only", "other source", "other version"],
 )
-def test_a_worker_that_cannot_make_runs_is_left_out_and_named(sweep, cluster, preload, capfd, tmp_path, source, told):
+def test_a_worker_that_cannot_make_runs_is_left_out_and_named(
+    sweep, cluster, preload, capfd, tmp_path, source, message
+):
     bad = cluster.add_worker(*preload(source))
     try:
         ended = sweep("seed=range(0,12)", engine=Engine(0, cluster.address))
@@ -86,7 +88,7 @@ def test_a_worker_that_cannot_make_runs_is_left_out_and_named(sweep, cluster, pr
         cluster.end(bad)
     assert results(ended) == results(sweep("seed=range(0,12)", f"outputs={tmp_path}/expected"))
     (line,) = warnings(capfd)
-    assert re.match(told, line)
+    assert re.match(message, line)
 
 
 @pytest.mark.costs(3)

@@ -74,7 +74,7 @@ def tune(
     seed = cast(int, plan.composed(0).resolved["seed"])
     store.prepare(checked.outputs)
     folder = study.folder(checked.outputs, checked.names)
-    with at_work(folder, alone=True) as name:
+    with at_work(folder, exclusive=True) as name:
         rules = replace(make_rules(checked.first.sweep, folder, trials, name), trace="all")
         journal = Journal(folder / JOURNAL, keys, objectives)
         study.write(folder, journal.trials)

@@ -75,15 +75,15 @@ def test_numbers_in_the_form_of_slurm(numbers, text):
 
 
 @pytest.mark.parametrize(
-    ("expected", "workers", "time", "told"),
+    ("expected", "workers", "time", "message"),
     [
         (Estimate(3600.0), 1, "01:01:00", "this machine's time for the longest task, about 30 min, and a minute"),
         (Estimate(3600.0), 2, "00:31:00", "about 15 min, and a minute"),
         (Estimate(360000.0), 1, "100:01:00", "about 50.0 h"),
-        (None, 1, None, "There is no time limit, because an estimate takes too long. Add --time."),
+        (None, 1, None, "No time limit is set, because an estimate takes too long. Add --time."),
     ],
 )
-def test_the_time_limit_is_twice_the_estimate_of_the_longest_task(cli, monkeypatch, expected, workers, time, told):
+def test_the_time_limit_is_twice_the_estimate_of_the_longest_task(cli, monkeypatch, expected, workers, time, message):
     def estimate(*_):
         if expected is None:
             raise TimeLimitError
@@ -92,7 +92,7 @@ def test_the_time_limit_is_twice_the_estimate_of_the_longest_task(cli, monkeypat
     monkeypatch.setattr("runner.sweeps.preview.estimate", estimate)
     script = cli("-m", *LINE, "--slurm", "2", "-j", str(workers)).out
     assert directives(script).get("time") == time
-    assert told in script
+    assert message in script
 
 
 @pytest.mark.parametrize(
@@ -122,9 +122,7 @@ def test_a_wrong_line_is_refused(cli, tmp_path, line, message):
 
 def test_parts_of_what_has_none_are_refused(cli, copy_sweep):
     listed = copy_sweep("goal", "noise")
-    assert (
-        f"--parts: {listed} is no sweep of `runner -m`, and has no parts." in cli("status", listed, "--parts", "2").err
-    )
+    assert f"--parts: only a sweep of `runner -m` has parts ({listed})." in cli("status", listed, "--parts", "2").err
     whole = cli("-m", *LINE, "-j", "1").folder
     ending = cli("status", whole, "--parts", "9")
     assert (ending.code, ending.err) == (2, "runner: --parts: more parts than cells (9). Allowed: 1 to 8.\n")

@@ -42,8 +42,8 @@ def test_a_sweep_at_work_says_how_long_it_will_take(cli, sweep):
         (sweep / "progress.json").write_bytes(sealed_json({"seconds_per_run": 100.0}))
         assert re.fullmatch(rf"at work \({here}\), about 2 min to go", cli("status", sweep).out.splitlines()[-1])
         with at_work(sweep):
-            told = cli("status", sweep).out.splitlines()[-1]
-            assert re.fullmatch(rf"at work \({here}; {here}\), about 50 s to go", told)
+            line = cli("status", sweep).out.splitlines()[-1]
+            assert re.fullmatch(rf"at work \({here}; {here}\), about 50 s to go", line)
     assert cli("status", sweep).out.splitlines()[-1].startswith("not at work")
 
 

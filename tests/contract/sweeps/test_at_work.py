@@ -13,7 +13,7 @@ from runner.sweeps.at_work import at_work, commands_at_work, commands_in
 
 HOLDS = (
     "import sys; from pathlib import Path; from runner.sweeps.at_work import at_work; \n"
-    "with at_work(Path(sys.argv[1]), alone=True): print('held', flush=True); sys.stdin.read()"
+    "with at_work(Path(sys.argv[1]), exclusive=True): print('held', flush=True); sys.stdin.read()"
 )
 
 
@@ -24,7 +24,7 @@ def test_a_killed_process_leaves_no_lock(tmp_path, monkeypatch):
     assert [command.job for command in commands_at_work(tmp_path)] == [f"process {holder.pid}"]
     with (
         pytest.raises(RunnerError, match=f"another command is at work on .*process {holder.pid}"),
-        at_work(tmp_path, alone=True),
+        at_work(tmp_path, exclusive=True),
     ):
         pass
     with at_work(tmp_path):
@@ -32,7 +32,7 @@ def test_a_killed_process_leaves_no_lock(tmp_path, monkeypatch):
     holder.kill()
     holder.communicate(timeout=PATIENCE)
     assert commands_at_work(tmp_path) == []
-    with at_work(tmp_path, alone=True):
+    with at_work(tmp_path, exclusive=True):
         assert len(commands_at_work(tmp_path)) == 1
     assert [*tmp_path.iterdir()] == []
 
@@ -51,9 +51,9 @@ def test_commands_of_an_outputs_folder_have_names_and_jobs(tmp_path, monkeypatch
     for name, value in variables.items():
         monkeypatch.setenv(name, value)
     with at_work(tmp_path / "sweeps" / "a") as one, at_work(tmp_path / "sweeps" / "a") as two:
-        with at_work(tmp_path / "tunings" / "b", alone=True):
+        with at_work(tmp_path / "tunings" / "b", exclusive=True):
             found = commands_in(tmp_path)
-            assert {command.name for command in found} == {one, two, "alone"}
+            assert {command.name for command in found} == {one, two, "exclusive"}
             assert {command.job for command in found} == {job.format(os.getpid())}
         assert len(commands_in(tmp_path)) == 2
     assert commands_in(tmp_path) == []
@@ -61,12 +61,12 @@ def test_commands_of_an_outputs_folder_have_names_and_jobs(tmp_path, monkeypatch
 
 def test_what_another_machine_left_is_removed_when_it_is_old(tmp_path, monkeypatch):
     monkeypatch.setattr("runner.sweeps.at_work._PATIENCE", 0.1)
-    sign = tmp_path / "at_work-alone"
+    sign = tmp_path / "at_work-exclusive"
     sign.write_text("n1\njob 16\n")
-    with pytest.raises(RunnerError, match="n1, job 16, last sign 1 s ago"), at_work(tmp_path, alone=True):
+    with pytest.raises(RunnerError, match="n1, job 16, last sign 1 s ago"), at_work(tmp_path, exclusive=True):
         pass
     os.utime(sign, (time.time() - 130, time.time() - 130))
-    with at_work(tmp_path, alone=True):
+    with at_work(tmp_path, exclusive=True):
         assert sign.read_text() != "n1\njob 16\n"
 
 

@@ -56,5 +56,7 @@ def test_a_scheduler_file_that_does_not_appear(sweep, tmp_path):
 @pytest.mark.parametrize("content", ["", "{", "[]", '{"address": 3}', '{"address": "here"}', "[" * 200, "\x00"])
 def test_a_file_that_is_no_scheduler_file(sweep, tmp_path, content):
     (tmp_path / "other.json").write_text(content)
-    with pytest.raises(RunnerError, match=r"other\.json is no scheduler file of Dask; start one with `dask scheduler"):
+    with pytest.raises(
+        RunnerError, match=r"other\.json is not a scheduler file of Dask; start one with `dask scheduler"
+    ):
         sweep("seed=0,1", engine=Engine(0, f"{tmp_path}/other.json"))

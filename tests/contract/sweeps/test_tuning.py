@@ -211,7 +211,10 @@ def test_a_metric_that_these_runs_do_not_have_is_told(tuned):
 def test_two_commands_at_once_on_one_tuning(tuned, monkeypatch):
     monkeypatch.setattr("runner.sweeps.at_work._PATIENCE", 0.1)
     folder = tuned(trials=1).folder
-    with at_work(folder, alone=True), pytest.raises(RunnerError, match=r"another command is at work on .*, process "):
+    with (
+        at_work(folder, exclusive=True),
+        pytest.raises(RunnerError, match=r"another command is at work on .*, process "),
+    ):
         tuned(trials=2)
     assert len(tuned(trials=2).trials) == 2
 
