@@ -6,7 +6,7 @@ import sys
 import time
 
 import pytest
-from support.patience import PATIENCE
+from support.patience import PATIENCE, wait_until
 
 from runner.base.errors import RunnerError, StoreError
 from runner.sweeps.at_work import at_work, commands_at_work, commands_in
@@ -75,9 +75,7 @@ def test_signs_are_given_while_the_command_works(tmp_path, monkeypatch):
     with at_work(tmp_path):
         (path,) = tmp_path.iterdir()
         os.utime(path, (0.0, 0.0))
-        end = time.monotonic() + PATIENCE
-        while path.stat().st_mtime == 0.0 and time.monotonic() < end:
-            pass
+        wait_until(lambda: path.stat().st_mtime > 0.0)
         assert commands_at_work(tmp_path)[0].age < 60.0
 
 
