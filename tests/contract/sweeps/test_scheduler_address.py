@@ -60,3 +60,10 @@ def test_a_file_that_is_no_scheduler_file(sweep, tmp_path, content):
         RunnerError, match=r"other\.json is not a scheduler file of Dask; start one with `dask scheduler"
     ):
         sweep("seed=0,1", engine=Engine(0, f"{tmp_path}/other.json"))
+
+
+def test_the_exit_code_of_a_command_says_that_it_continues(cli, tmp_path):
+    ending = cli("-m", "robot=macro", "duration=0.05", "seed=0,1", "hydra.sweeper.address=none.json")
+    assert (ending.code, ending.out) == (75, "")
+    (tmp_path / "none.json").write_text("{}")
+    assert cli("-m", "robot=macro", "duration=0.05", "seed=0,1", "hydra.sweeper.address=none.json").code == 2
