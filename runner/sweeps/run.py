@@ -16,7 +16,7 @@ from numpy.typing import NDArray
 
 from runner import store
 from runner.base import progress
-from runner.base.errors import ConfigError, TemporaryError
+from runner.base.errors import ConfigError, StoreError, TemporaryError
 from runner.base.sanitize import one_line
 from runner.config.compose.composer import Composer
 from runner.config.compose.given_keys import given_keys
@@ -177,6 +177,8 @@ def make_missing(plan: Plan, checked: Checked, rules: Rules, engine: Engine) -> 
                 raise TemporaryError(f"{report.trouble}; {GO_ON}")
             if rules.stop_at_failure and any(end.failure for end in report.outcomes):
                 break
+    except StoreError as error:  # of the command itself, as its record of the pace
+        raise TemporaryError(f"{error}; {GO_ON}") from error
     except KeyboardInterrupt:  # no worker is left to finish its run
         clean(rules, names)
         raise
