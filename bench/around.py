@@ -73,7 +73,7 @@ def main(rounds: int | None = None) -> bool:
             )
             for run, record in enumerate(records)
         ]
-        write_shard(outputs, shard_name(1, 1), rows)
+        write_shard(outputs, shard_name(1, "bench", 1), rows)
 
     print(f"CPU time a run of {len(trace.t) - 1} ticks, {_RUNS} at once, quickest of {times}")
     with tempfile.TemporaryDirectory() as folder:

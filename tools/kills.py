@@ -9,7 +9,7 @@ import sys
 import tempfile
 import time
 from collections import Counter
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -78,13 +78,14 @@ class Stored:
         self._outputs, self._doubled = outputs, set[str]()
         self.made: dict[Path, int] = {}
 
-    def look(self) -> None:
-        """Note when each was stored, and those that were stored again since the last look."""
+    def look(self) -> Mapping[Path, int]:
+        """Note when each was stored, and those that were stored again since the last look; return `made`."""
         outputs = self._outputs
         for path in [*(outputs / "runs").glob("*/metrics.json"), *(outputs / "shards").glob("*.parquet")]:
             stored = path.stat().st_mtime_ns
             if self.made.setdefault(path, stored) != stored:
                 self._doubled.add(path.parent.name)
+        return self.made
 
     def tally(self, workers: int, commands: int) -> Tally:
         """Count what became of the one sweep or tuning there, which has ended, after some kills."""
@@ -99,7 +100,7 @@ class Stored:
         folders = list((outputs / "runs").iterdir())
         doubled = self._doubled | {name for name, count in rows.items() if count > 1}
         lost = set(sweep.hashes) - {path.name for path in folders} - {*rows}
-        hidden = [path for path in outputs.rglob("*") if path.name.startswith(".") or path.name == "scratch"]
+        hidden = [path for path in outputs.rglob("*") if path.name.startswith((".", "scratch", "at_work"))]
         halves = [path for path in folders if not (path / "metrics.json").exists()]
         leftovers = [str(path) for path in (*hidden, *halves)]
         return Tally(workers, commands, len(sweep.hashes), len(lost), len(doubled), leftovers)

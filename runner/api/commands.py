@@ -72,7 +72,7 @@ def sweep(
             list in another list: `torque_limits__max=[[1, 2, 3]]`.
 
     Raises:
-        RunnerError: if a config cannot be run, before the first run starts; if another sweep uses the outputs folder.
+        RunnerError: if a config cannot be run, before the first run starts.
     """
     from runner.config.compose.composer import Composer
     from runner.sweeps.finer_step import work_out_sweep

@@ -1,6 +1,6 @@
 """Exceptions and error messages.
 
-Every error that a user can fix derives from RunnerError and ends with exit code 2.
+Every error that a user can fix derives from RunnerError. It ends with exit code 2, or 75 if the same command continues.
 
 Every command imports this module. It therefore imports code for messages only when a message needs it.
 """
@@ -27,10 +27,25 @@ class RunnerError(Exception):
     """Base of all errors that a user can fix; the message contains the problem, the value found and allowed values.
 
     The message is safe to print, and its lines have a limited length, even if it contains external values and names.
+
+    Attributes:
+        exit_code: Exit code of a command that ends with this error.
     """
+
+    exit_code = 2
 
     def __init__(self, text: str) -> None:
         super().__init__(lines(text))
+
+
+class TemporaryError(RunnerError):
+    """Cause that may pass, such as a full disk or a lost scheduler: the same command continues.
+
+    Attributes:
+        exit_code: Exit code of a command that ends with this error.
+    """
+
+    exit_code = 75  # EX_TEMPFAIL of sysexits.h
 
 
 class ConfigError(RunnerError):

@@ -1,7 +1,7 @@
 """Command-line entry point: the commands, their parsers and help, the choice of the command, and exit codes.
 
-Exit codes: 0 success, 1 a run failed or a check failed, 2 invalid input, 3 internal error, 130 interrupted, 143
-terminated. This module imports little, so that help and completion start fast.
+Exit codes: 0 success, 1 a run failed or a check failed, 2 invalid input, 3 internal error, 75 temporary, 130
+interrupted, 143 terminated. This module imports little, so that help and completion start fast.
 """
 
 import contextlib
@@ -59,8 +59,8 @@ _NOTES = """\
 eval "$(runner -sc install=bash)" turns on completion in bash; zsh and fish also work.
 """
 _EXITS = """\
-Exit codes: 0 success, 1 a run failed or a check failed, 2 invalid input, 3 internal error, 130 interrupted, 143
-terminated.
+Exit codes: 0 success, 1 a run failed or a check failed, 2 invalid input, 3 internal error, 75 temporary (the same
+command continues), 130 interrupted, 143 terminated.
 """
 _COLUMN, _WIDTH = 13, 120
 
@@ -127,7 +127,7 @@ def dispatch(words: Sequence[str]) -> int:
             return run_line(others)
     except RunnerError as error:
         print(f"runner: {error}", file=sys.stderr)
-        return 2
+        return error.exit_code
     except MemoryError as error:
         print(f"runner: not enough memory: {error}; shorten the run or ask for fewer repetitions", file=sys.stderr)
         return 2

@@ -8,13 +8,13 @@ from runner.base.sanitize import few, one_line
 from runner.store.axes import SweepAxis, override_value
 
 if TYPE_CHECKING:
-    from runner.sweeps.plan import Grid
+    from runner.sweeps.plan import Plan
     from runner.sweeps.preview import Preview
 
 _MOST_LISTED = 1000  # values of an axis that are read; a few are printed
 
 
-def print_preview(plan: "Grid", found: "Preview", as_json: bool) -> None:
+def print_preview(plan: "Plan", found: "Preview", as_json: bool) -> None:
     """Print the axes and cells of a plan, which of them are stored, and the expected time.
 
     Args:
@@ -22,13 +22,14 @@ def print_preview(plan: "Grid", found: "Preview", as_json: bool) -> None:
         found: Its preview.
         as_json: True to print all cells as JSON.
     """
-    entries = plan.axes().entries
+    grid = plan.whole.axes()
+    entries = grid.entries if grid else []
     axes = [entry for entry in entries if isinstance(entry, SweepAxis)]
     shared = [entry for entry in entries if isinstance(entry, str)]
     if as_json:
         cells = [
             {"overrides": plan.overrides(cell), "run": name, "stored": bool(found.stored[cell])}
-            for cell, name in enumerate(found.names)
+            for cell, name in enumerate(found.checked.names)
         ]
         known = {} if found.expected is None else {"seconds": found.expected.seconds, "known": found.expected.known}
         listed = [{"key": axis.key, "values": list(axis.values)} for axis in axes]

@@ -59,7 +59,7 @@ def run(options: Namespace) -> int:
 def _delete(options: Namespace) -> None:
     from runner.base.errors import RunnerError
     from runner.store.listing import list_entries, removable, remove
-    from runner.sweeps.status import is_at_work
+    from runner.sweeps.at_work import commands_in, in_words
 
     entries = list_entries(options.outputs)
     found, kept = removable(entries, options.delete)
@@ -72,8 +72,8 @@ def _delete(options: Namespace) -> None:
     if not options.yes:
         print(f"runner: {told}; nothing is removed without --yes", file=sys.stderr)
         return
-    if is_at_work(options.outputs):
-        raise RunnerError(f"a sweep is at work in {options.outputs}; nothing is removed.")
+    if commands := commands_in(options.outputs):
+        raise RunnerError(f"a sweep is at work in {options.outputs} ({in_words(commands)}); nothing is removed.")
     remove(found)
     print(f"runner: removed {told}", file=sys.stderr)
 

@@ -19,7 +19,7 @@ from typing import TYPE_CHECKING, Any
 from runner.base.errors import RunnerError, unknown
 from runner.base.paths import conf_dir
 from runner.base.sanitize import one_line
-from runner.cli.arguments import Parser
+from runner.cli.arguments import Parser, count
 from runner.config.compose.files import outputs_dir, outputs_override, user_overrides
 from runner.reporting.table import Table, numbers, terminal
 from runner.store.kinds import WORD
@@ -30,10 +30,12 @@ if TYPE_CHECKING:
     from runner.config.composed import Composed
     from runner.store import Run
     from runner.store.axes import Axis
-    from runner.sweeps.run import Ended
+    from runner.sweeps.plan import Grid
+    from runner.sweeps.run import Ended, Engine
 
 _METRICS = 5
-_OF_SWEEPS = [f"sweep.{name}" for name in ("trace", "retry", "on_failure", "attempts", "time_limit")]
+_PART = "sweep.part"
+_OF_SWEEPS = [*(f"sweep.{name}" for name in ("trace", "retry", "on_failure", "attempts", "time_limit")), _PART]
 _NAMES = (("robot", "name"), ("controller", "kind"), ("trajectory", "kind"))
 _FAILURES_SHOWN = 20
 _MOST_RANKED = 200  # cells; to read so many takes half a second
@@ -65,6 +67,9 @@ def _add_own(parser: Parser) -> None:
         json="with --dry-run: print all cells as JSON",
     )
     parser.add_argument("--dry-run", action="store_true", help="print cells and expected time; simulate nothing")
+    parser.add_argument(
+        "--slurm", type=count, metavar="N", help="print a script for a job array of N tasks; submit nothing"
+    )
 
 
 def run(arguments: Namespace) -> int:
@@ -83,12 +88,18 @@ def simulate(words: Sequence[str]) -> int:
             raise RunnerError(unknown("name", shown, _SHOWN, "--cfg"))
         if any(word in _MANY for word in others):
             raise RunnerError("--cfg: prints the config of one run. Leave out -m, and give each key one value.")
+    words_of_task = [*(f"--config-dir={folder}" for folder in given.config_dir), *others]
     if given.output is not None:
+        words_of_task.append(f"--output={given.output}")
         others.append(outputs_override(given.output))
     if given.jobs is not None:
         if not any(word in _MANY for word in others):
             raise RunnerError("--jobs: one run uses one process. Add -m for a sweep.")
         others.append(f"hydra.sweeper.workers={given.jobs}")
+    if given.slurm and not any(word in _MANY for word in others):
+        raise RunnerError("--slurm: one run needs no job array. Add -m for a sweep.")
+    if given.slurm and given.dry_run:
+        raise RunnerError("--slurm: simulates nothing, as --dry-run. Leave out one of them.")
     if given.json and not given.dry_run:
         raise RunnerError("--json: prints the cells of a preview. Add --dry-run.")
     line, overrides = _read_line(others, given.config_dir)
@@ -96,6 +107,8 @@ def simulate(words: Sequence[str]) -> int:
         return 0  # --cfg, --hydra-help and the like
     if given.dry_run:
         return _preview(line, overrides, given.config_dir, given.json)
+    if given.slurm:
+        return _print_job_array(line, overrides, given.config_dir, words_of_task, given.slurm)
     return _simulate(line, overrides, given.config_dir, typed)
 
 
@@ -189,22 +202,50 @@ def _warn_of_one_run(composed: "Composed") -> None:
 def _preview(line: _Line, overrides: Sequence[str], config_dirs: Sequence[Path], as_json: bool) -> int:
     """Print what the line would simulate."""
     from runner.cli.preview import print_preview
+    from runner.sweeps.part import own_part
+    from runner.sweeps.preview import preview
+
+    grid, engine = _plan(line, overrides, config_dirs)
+    if not line.many:
+        _warn_of_one_run(grid.composed(0))
+    plan = own_part(grid)
+    print_preview(plan, preview(plan, engine), as_json)
+    return 0
+
+
+def _plan(line: _Line, overrides: Sequence[str], config_dirs: Sequence[Path]) -> "tuple[Grid, Engine]":
+    """Return the cells of a line, and the location of their execution."""
     from runner.config.compose.composer import Composer
     from runner.sweeps.plan import Grid
-    from runner.sweeps.preview import preview
     from runner.sweeps.run import Engine
     from runner.sweeps.typed import plan_typed
 
     composer = Composer(config_dirs, line.root)
     ours, of_sweeper = _split(overrides)
     if line.many:
-        plan, sweeper = plan_typed(ours, composer, of_sweeper)
-        engine = Engine(sweeper.workers, sweeper.address)
+        grid, sweeper = plan_typed(ours, composer, of_sweeper)
+        return grid, Engine(sweeper.workers, sweeper.address)
+    composer.load(overrides)  # rejects several values
+    return Grid(ours, composer), Engine(0, None)
+
+
+def _print_job_array(
+    line: _Line, overrides: Sequence[str], config_dirs: Sequence[Path], words: Sequence[str], parts: int
+) -> int:
+    """Print the script of a job array for the line, given also by its words."""
+    from runner.sweeps.slurm import plan_job_array
+
+    keys = [word.lstrip("+").partition("=")[0] for word in words]
+    if _PART in keys:
+        raise RunnerError(f"{_PART}: --slurm sets it in each task. Leave it out.")
+    kept = [word for word, key in zip(words, keys, strict=True) if key not in (*_MANY, f"{_OF_SWEEPER}workers")]
+    array = plan_job_array(*_plan(line, overrides, config_dirs), parts, kept)
+    if array.tasks:
+        print(array.script, end="")
+        text = f"{len(array.tasks)} of {parts} tasks have missing cells; submit the script with `sbatch`"
     else:
-        composer.load(overrides)  # rejects several values
-        plan, engine = Grid(ours, composer), Engine(0, None)
-        _warn_of_one_run(plan.composed(0))
-    print_preview(plan, preview(plan, engine), as_json)
+        text = f"all {array.cells} cells are stored; no task is left"
+    print(one_line(f"runner: {text}; progress: `runner status {array.folder}`"), file=sys.stderr)
     return 0
 
 
@@ -339,9 +380,11 @@ def _print_cells(ended: "Ended", axes: "Sequence[Axis]") -> None:
 
     made, failed = len(ended.ends) - ended.stored, len(ended.failures)
     runs = "1 run" if len(ended.ends) == 1 else f"{len(ended.ends)} runs"
+    if ended.part:
+        runs = f"part {ended.part}: {runs}"
     text = f"{runs}: {made} made, {ended.stored} stored before, {failed or 'none'} of them failed"
     answer, spec = "", ""
-    if len(ended.names) <= _MOST_RANKED and not (ended.left or failed == len(ended.names)):
+    if len(ended.names) <= _MOST_RANKED and not (ended.part or ended.left or failed == len(ended.names)):
         sweep = store.open_sweep(ended.folder)
         work_out_sweep(sweep)
         subject = choose(measure_sweep(sweep))
@@ -354,6 +397,9 @@ def _print_cells(ended: "Ended", axes: "Sequence[Axis]") -> None:
         print(one_line(f"runner: {line}"), file=sys.stderr)
     here = ended.outputs.resolve() == outputs_dir().resolve()
     name = WORD if here else str(ended.folder)
+    if ended.part:
+        print(one_line(f"runner: next: `runner status {name}`"), file=sys.stderr)
+        return
     compared = next((axis.name for axis in axes if axis.name != "seed"), None)
     compare = f", `runner compare {name} --by {compared}`" if compared else ""
     print(one_line(f"runner: next: `runner report {name}`, `runner table {name}`{compare}"), file=sys.stderr)

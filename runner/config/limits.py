@@ -1,9 +1,10 @@
 """Limits of CPU time and memory, estimates that are checked before memory is allocated, and config of a sweep."""
 
 import math
-from typing import Literal
+import re
+from typing import Annotated, Literal
 
-from pydantic import PositiveFloat, PositiveInt
+from pydantic import BeforeValidator, PositiveFloat, PositiveInt
 
 from runner.base.errors import ConfigError
 from runner.base.limits import half_of_memory
@@ -36,6 +37,24 @@ class LimitsConfig(StrictModel):
     memory: PositiveFloat | None
 
 
+def split_part(text: str) -> tuple[int, int]:
+    """Return number and count of a part, given as K/N.
+
+    Raises:
+        ValueError: if it is not a part.
+    """
+    found = re.fullmatch(r"(\d{1,9})/(\d{1,9})", text)
+    if found is None or int(found[1]) >= int(found[2]):
+        raise ValueError("must be K/N, such as 0/40, with whole numbers K from 0 to N - 1")
+    return int(found[1]), int(found[2])
+
+
+def _check_part(text: object) -> object:
+    if text is not None:
+        split_part(str(text))
+    return text if text is None else str(text)
+
+
 class SweepConfig(StrictModel):
     """Storage of a sweep's runs, and handling of runs that fail.
 
@@ -46,6 +65,8 @@ class SweepConfig(StrictModel):
         on_failure: Reaction of the sweep to the first failed run.
         attempts: Number of attempts at a run that a time limit, an error or the loss of a worker interrupts.
         time_limit: Longest wall-clock time of a run, in s, after which it is interrupted; None for no limit.
+        part: Part of the sweep to simulate, as K/N: the cells K, K + N, K + 2 N, ..., with K from 0 to N - 1. The parts
+            have one sweep folder and may be simulated at once, also on several machines. None for all cells.
     """
 
     trace: Literal["auto", "all", "sample", "failed", "never"]
@@ -53,6 +74,7 @@ class SweepConfig(StrictModel):
     on_failure: Literal["continue", "stop"]
     attempts: PositiveInt
     time_limit: Seconds[PositiveFloat | None]
+    part: Annotated[str, BeforeValidator(_check_part)] | None
 
 
 def memory_of_run(arm: Robot, ticks: int, repetitions: int, has_contact: bool) -> float:

@@ -1,8 +1,8 @@
 """Shards: files with many finished runs of a large sweep that have no trace.
 
-`outputs/shards/NUMBER-PLACE.DIGEST.parquet` has a row for each run: its hash, its failure, the number of its caveats,
-and the values of each metric. The row also has the config, URDF and record in the format of a run's folder. The record
-has no metrics if they follow from the values; the column `metrics` has their names in order.
+`outputs/shards/NUMBER-COMMAND-PLACE.DIGEST.parquet` has a row for each run: its hash, its failure, the number of its
+caveats, and the values of each metric. The row also has the config, URDF and record in the format of a run's folder.
+The record has no metrics if they follow from the values; the column `metrics` has their names in order.
 
 A shard is written once, as a whole, and its name contains the digest of its content. NUMBER counts the commands that
 wrote shards, so that the later of two shards is known without a clock.
@@ -104,9 +104,15 @@ def next_number(outputs: Path) -> int:
     return 1 + max((int(number) for number in numbers if number.isdecimal()), default=0)
 
 
-def shard_name(number: int, place: int) -> str:
-    """Return the name of a shard without its digest, from the number of the command and of the shard in the command."""
-    return f"{number:020d}-{place:06d}"
+def shard_name(number: int, command: str, place: int) -> str:
+    """Return the name of a shard without its digest.
+
+    Args:
+        number: Number of the command; see next_number.
+        command: Random name of the command, because commands that start together have one number.
+        place: Number of the shard in the command.
+    """
+    return f"{number:020d}-{command}-{place:06d}"
 
 
 def find_shards(outputs: Path, name: str) -> list[Path]:

@@ -2,6 +2,7 @@
 
 import hashlib
 import json
+import shlex
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
 from itertools import islice
@@ -52,6 +53,11 @@ class Sweep:
     history: "Histories" = field(default_factory=dict)
 
     @property
+    def continuation(self) -> str:
+        """Command that continues the sweep; without the address of a scheduler, which may have ended."""
+        return without_keys(self.command, ("hydra.sweeper.address",))
+
+    @property
     def outputs(self) -> Path:
         """Outputs folder that contains the runs."""
         return self.folder.parent.parent
@@ -90,6 +96,16 @@ class Sweep:
         except StoreError as error:
             raise StoreError(f"{error}; `runner status {self.folder}` says what is left of the sweep") from error
         return run.judged_by(self.spec, self.history) if self.spec else run
+
+
+def without_keys(command: str, keys: Sequence[str]) -> str:
+    """Return a command line without the overrides of some keys."""
+    try:
+        words = shlex.split(command)
+    except ValueError:  # not the runner's
+        return command
+    kept = [word for word in words if word.partition("=")[0].lstrip("+") not in keys]
+    return command if kept == words else shlex.join(kept)
 
 
 @dataclass(frozen=True)

@@ -37,7 +37,7 @@ def make_all(
     Raises:
         ConfigError: if one cannot be made, or all would cost too much; nothing has been started then.
         StoreError: if the disk does not take them.
-        RunnerError: if an equation cannot be checked or typeset, another sweep is at work in the same folder, or the
+        RunnerError: if an equation cannot be checked or typeset, or the
             Dask scheduler does not answer.
     """
     study.check_equations()

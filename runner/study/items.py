@@ -60,7 +60,7 @@ def make_items(items: Mapping[str, Item], way: Way, trace: Literal["all", "never
     Raises:
         ConfigError: if one cannot be made, or all would cost too much; nothing has been started then.
         StoreError: if the disk does not take them.
-        RunnerError: if another sweep is at work in the same folder, or the Dask scheduler does not answer.
+        RunnerError: if the Dask scheduler does not answer.
     """
     loader = Composer(way.config_dirs)
     sweeper = loader.sweeper([text for text in way.overrides if text.startswith("hydra.")])

@@ -3,31 +3,30 @@
 import asyncio
 import contextlib
 import logging
-import os
 import shutil
 import signal
+import socket
 import threading
 import time
-from collections.abc import Callable, Generator, Iterator, Sequence
+from collections.abc import Callable, Generator, Iterator, Mapping, Sequence
 from concurrent.futures import CancelledError
+from dataclasses import replace
 from functools import partial
 from pathlib import Path
 from typing import Any
 
-from runner.base.errors import RunnerError
-from runner.store.physics import physics_digest
+from runner.base.errors import RunnerError, TemporaryError
 from runner.sweeps.deadline import STUCK
 from runner.sweeps.queue import Queue
+from runner.sweeps.remote import GO_ON, Remote, hush, in_place
 from runner.sweeps.work import Chunk, Report, give_up, work
 
 _DEATHS = 3  # worker deaths during one run before the run counts as the cause
-_ANSWER_WITHIN = 10.0  # s, for a scheduler and its workers
 _LOOK_EVERY = 5.0  # s between two looks for workers
 _BACK_WITHIN = 120.0  # s without any worker
 # The next batch of runs reuses freed memory. Otherwise the system would clear 250 KB of fresh pages for each run.
 _MEMORY = {"MALLOC_TRIM_THRESHOLD_": 2**28, "MALLOC_MMAP_THRESHOLD_": 2**25}  # bytes
 _END_WITHIN = 0.5  # s for a worker after Ctrl-C
-GO_ON = "finished runs are stored; the same command continues"
 
 
 def in_process(queue: Queue, go_on: Callable[[], bool] = lambda: True) -> Generator[Report]:
@@ -44,50 +43,53 @@ def in_process(queue: Queue, go_on: Callable[[], bool] = lambda: True) -> Genera
         yield report
 
 
-def on_cluster(queue: Queue, client: Any) -> Generator[Report]:
+def on_cluster(queue: Queue, client: Any, remote: Remote | None = None) -> Generator[Report]:
     """Process a queue on a Dask cluster with a bounded number of chunks in flight; yield the report of each chunk.
 
     Args:
         queue: The queue.
         client: A `distributed.Client`.
+        remote: The workers of the client if they are on other machines: one that cannot make runs is left out.
 
     Raises:
-        RunnerError: if the scheduler is lost, all workers are lost for good, or a worker cannot access its files.
+        TemporaryError: if the scheduler is lost, all workers are lost for good, or none of them can make runs.
     """
     from distributed.scheduler import KilledWorker
 
-    under_way: dict[Any, Chunk] = {}
+    under_way: dict[Any, tuple[Chunk, Sequence[str] | None]] = {}  # chunk, and the workers to which it is restricted
     suspects: set[str] = set()
 
     def submit(chunk: Chunk) -> None:
-        future = client.submit(_work, chunk, topic, key=f"runs-{chunk.name}", pure=False)
-        under_way[future] = chunk
+        only = remote.only() if remote else None
+        future = client.submit(_work, chunk, topic, key=f"runs-{chunk.name}", pure=False, workers=only)
+        under_way[future] = chunk, only
 
     def fill() -> None:
-        workers = max(1, len(client.nthreads()))
+        workers = max(1, len(remote.usable() if remote else client.nthreads()))
         while len(under_way) < 2 * workers and (chunk := queue.take(workers)) is not None:
             submit(chunk)
         if not under_way and (suspect := queue.take_suspect()) is not None:
             suspects.add(suspect.name)
             submit(suspect)
 
-    topic = f"ticks-{queue.rules.sweep.name}"
+    # Topics and keys are global in a scheduler: the same key of two commands is one task.
+    topic = f"ticks-{queue.rules.command}"
     client.subscribe_topic(topic, lambda event: queue.tell(*event[1]))
     try:
         fill()
         while under_way:
-            future = _next_done(client, list(under_way))
-            chunk = under_way.pop(future)
+            future = _next_done(client, {future: only for future, (_, only) in under_way.items()})
+            chunk, _ = under_way.pop(future)
             queue.end(chunk)
             if future.status == "finished":
                 report = future.result()
+                if report.trouble and remote is not None:
+                    report = _without_worker(report, chunk, queue, remote)
             elif future.status in ("cancelled", "lost"):
                 raise CancelledError("its tasks are gone")
             elif isinstance(future.exception(), KilledWorker):
                 # All runs that the worker had are suspects until each has been made separately.
                 report = _give_up(chunk) if chunk.name in suspects else Report(queue.give_back(chunk), "", 0.0)
-            elif isinstance(future.exception(), OSError):
-                raise RunnerError(f"a worker failed: {future.exception()}; {GO_ON}") from future.exception()
             else:
                 raise future.exception()
             future.release()
@@ -95,7 +97,7 @@ def on_cluster(queue: Queue, client: Any) -> Generator[Report]:
             fill()
             yield report
     except (OSError, CancelledError) as error:
-        raise RunnerError(f"the Dask scheduler is lost; {GO_ON}") from error
+        raise TemporaryError(f"the Dask scheduler is lost; {GO_ON}") from error
     finally:
         client.cancel(list(under_way))
 
@@ -108,24 +110,43 @@ def _work(chunk: Chunk, topic: str) -> Report:
     from distributed import Status, get_worker
 
     worker = get_worker()
-    return work(
-        chunk,
-        lambda ticks: worker.log_event(topic, (chunk.name, ticks)),
-        lambda: worker.status not in (Status.closing, Status.closed),
-    )
+    try:
+        report = work(
+            chunk,
+            lambda ticks: worker.log_event(topic, (chunk.name, ticks)),
+            lambda: worker.status not in (Status.closing, Status.closed),
+        )
+    except OSError as error:
+        report = Report([], f"a worker failed: {error}", 0.0)
+    return replace(report, host=socket.gethostname(), worker=worker.address)
 
 
-def _next_done(client: Any, futures: Sequence[Any]) -> Any:
+def _without_worker(report: Report, chunk: Chunk, queue: Queue, remote: Remote) -> Report:
+    """Leave out a worker that reported trouble, and queue its missing jobs again; return the stored ones.
+
+    Raises:
+        TemporaryError: if no other worker is left.
+    """
+    reason = in_place(report.trouble, report.host, report.worker)
+    if not set(remote.usable()) - {report.worker}:
+        raise TemporaryError(f"{reason}, and no other worker is left; {GO_ON}")
+    remote.leave_out(report.worker, reason)
+    return Report(queue.give_back(chunk, as_suspects=False), "", 0.0)
+
+
+def _next_done(client: Any, futures: Mapping[Any, Sequence[str] | None]) -> Any:
+    """Return the next future that is done; `futures` gives the workers to which each is restricted."""
     from distributed import wait
 
     last_seen = time.monotonic()
     while not any(future.done() for future in futures):
-        if client.nthreads():
+        workers = set(client.nthreads())
+        if any(workers if only is None else workers.intersection(only) for only in futures.values()):
             last_seen = time.monotonic()
         elif time.monotonic() - last_seen > _BACK_WITHIN:
-            raise RunnerError(f"all workers are gone and none came back for {_BACK_WITHIN:g} s; {GO_ON}")
+            raise TemporaryError(f"all workers are gone and none came back for {_BACK_WITHIN:g} s; {GO_ON}")
         with contextlib.suppress(TimeoutError):
-            wait(futures, timeout=_LOOK_EVERY, return_when="FIRST_COMPLETED")
+            wait(list(futures), timeout=_LOOK_EVERY, return_when="FIRST_COMPLETED")
     return next(future for future in futures if future.done())
 
 
@@ -134,12 +155,6 @@ def _give_up(chunk: Chunk) -> Report:
     if chunk.rules.settings.time_limit is not None:
         reason += f", by itself or because it could not be interrupted for {STUCK:g} s after sweep.time_limit"
     return give_up(chunk, reason)
-
-
-def _hush() -> None:
-    """Silence Dask's log; the runner reports the relevant events as failures of runs or errors."""
-    for part in ("", ".client", ".core", ".nanny", ".scheduler", ".worker"):
-        logging.getLogger(f"distributed{part}").setLevel(logging.CRITICAL)
 
 
 @contextlib.contextmanager
@@ -160,7 +175,7 @@ def local_client(workers: int, scratch: Path) -> Iterator[Any]:
     from distributed import Client
 
     scratch.mkdir(parents=True, exist_ok=True)
-    _hush()
+    hush()
     settings = {
         "distributed.scheduler.allowed-failures": _DEATHS,
         # A dead worker is restarted. By default, Dask drops a worker that is down 15 s after an earlier death.
@@ -237,41 +252,3 @@ def _start_cluster(workers: int, scratch: Path) -> Any:
             f"the worker processes cannot be started: {str(error).rstrip('.')}; check the limits of open files and "
             "processes (`ulimit -a`), or set hydra.sweeper.workers=0, which needs no worker processes"
         ) from error
-
-
-@contextlib.contextmanager
-def remote_client(address: str) -> Iterator[Any]:
-    """Connect to a running Dask scheduler; yield the `distributed.Client`.
-
-    Raises:
-        RunnerError: if no scheduler answers, it has no workers, or the cluster has another version of the runner.
-    """
-    from distributed import Client
-
-    start = (
-        f"start one with `dask scheduler --host 127.0.0.1 --port {address.rpartition(':')[2]}` and workers with "
-        f"`dask worker {address} --nthreads 1 --nworkers {os.cpu_count()}`"
-    )
-    _hush()
-    try:
-        client = Client(address, timeout=_ANSWER_WITHIN)
-    except (OSError, TimeoutError, ValueError) as error:
-        raise RunnerError(f"hydra.sweeper.address: no Dask scheduler answers at {address}; {start}") from error
-    with client:
-        try:
-            client.wait_for_workers(1, timeout=_ANSWER_WITHIN)
-        except TimeoutError as error:
-            raise RunnerError(f"hydra.sweeper.address: the scheduler at {address} has no workers; {start}") from error
-        _check_versions(client)
-        yield client
-
-
-def _check_versions(client: Any) -> None:
-    same = "; install the same version of the runner for the command, the scheduler and all workers"
-    try:
-        found = {"the scheduler": client.run_on_scheduler(physics_digest), **client.run(physics_digest)}
-    except (ImportError, AttributeError) as error:
-        raise RunnerError(f"the cluster cannot execute runs: {error}{same}") from error
-    other = [place for place, digest in found.items() if digest != physics_digest()]
-    if other:
-        raise RunnerError(f"the cluster has other source code at {', '.join(other)}{same}")

@@ -227,7 +227,7 @@ def _gather(sweep: Sweep) -> Gathered:
         if isinstance(error, DamagedError) or not (left := find_status(sweep).left):
             raise
         raise StoreError(
-            f"{left} of {len(sweep.hashes)} cells of {sweep.folder} are not stored; continue with: {sweep.command}"
+            f"{left} of {len(sweep.hashes)} cells of {sweep.folder} are not stored; continue with: {sweep.continuation}"
         ) from error
     return gathered
 
@@ -242,7 +242,7 @@ def measure_stored(sweep: Sweep, name: str = "") -> Measurements:
     part, damage = stored_part(sweep)
     if not len(part.hashes):
         raise StoreError(
-            f"{sweep.folder}: none of its {len(sweep.hashes)} cells is stored; continue with: {sweep.command}"
+            f"{sweep.folder}: none of its {len(sweep.hashes)} cells is stored; continue with: {sweep.continuation}"
         )
     missing = len(sweep.hashes) - len(part.hashes)
     return replace(measure_sweep(part), name=name, folder=sweep.folder, missing=missing, damage=damage)

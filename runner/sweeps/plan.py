@@ -70,6 +70,11 @@ class Plan(ABC):
         self._source = source
         self._templates: dict[Hashable, Template | ConfigError] = {}
 
+    @property
+    def whole(self) -> "Plan":
+        """The plan of the whole sweep; the plan itself if it is not a part."""
+        return self
+
     @abstractmethod
     def __len__(self) -> int:
         """Return the number of cells."""

@@ -77,7 +77,8 @@ class Queue:
             return None
         stop = start + 1
         if self._seconds_per_tick is not None:
-            fair = (ticks[-1] - ticks[stop]) / (2 * workers)
+            left = ticks[-1] - ticks[start]
+            fair = left if workers == 1 else (ticks[-1] - ticks[stop]) / (2 * workers)
             budget = min(_SECONDS_PER_CHUNK / self._seconds_per_tick, fair)
             affordable = int(np.searchsorted(ticks, ticks[start] + budget, side="right")) - 1
             stop = min(max(affordable, start + self._fewest, stop), start + _LARGEST, len(self._cells))
@@ -111,15 +112,22 @@ class Queue:
             known = self._seconds_per_tick
             self._seconds_per_tick = seconds if known is None else 0.5 * (known + seconds)
 
-    def give_back(self, chunk: Chunk) -> list[store.Outcome]:
-        """Mark the unfinished jobs of a chunk with dead workers as suspects; return the outcomes of its stored jobs."""
+    def give_back(self, chunk: Chunk, as_suspects: bool = True) -> list[store.Outcome]:
+        """Queue the unfinished jobs of a chunk again; return the outcomes of its stored jobs.
+
+        Args:
+            chunk: The chunk.
+            as_suspects: True if its worker died: then each unfinished job may be the cause, and is made separately.
+        """
         done = []
         known = find_stored(chunk)
         for name in chunk.names:
             if name in known:
                 done.append(known[name])
-            else:
+            elif as_suspects:
                 self._suspects.append(self._under_way.pop(name))
+            else:
+                self.put(self._under_way.pop(name))
         return done
 
     def _chunk(self, cells: Sequence[int]) -> Chunk:
@@ -129,6 +137,6 @@ class Queue:
             names = [self._names[cell] for cell in own]
             self._under_way |= dict(zip(names, own, strict=True))
             parts.append(Part(names, configs))
-        name = shard_name(self._number, self._handed_out)
+        name = shard_name(self._number, self.rules.command, self._handed_out)
         self._ticks_of[name] = 0
         return Chunk(name, self.rules, parts)

@@ -16,7 +16,7 @@ from numpy.typing import NDArray
 
 from runner import store
 from runner.base import progress
-from runner.base.errors import ConfigError, StoreError
+from runner.base.errors import ConfigError, StoreError, TemporaryError
 from runner.base.sanitize import one_line
 from runner.config.compose.composer import Composer
 from runner.config.compose.given_keys import given_keys
@@ -29,21 +29,23 @@ from runner.store.atomic import refuse_links, remove_leftovers
 from runner.store.finished import FINER
 from runner.store.kinds import note
 from runner.store.names import Names
+from runner.sweeps.at_work import at_work, commands_at_work, commands_in
 from runner.sweeps.check import Checked, check
 from runner.sweeps.differing import Resolved
-from runner.sweeps.engine import GO_ON, in_process, local_client, on_cluster, remote_client
+from runner.sweeps.engine import in_process, local_client, on_cluster
 from runner.sweeps.estimate import START_UP, Estimate, Pace, estimate
 from runner.sweeps.outcomes import Ends
+from runner.sweeps.part import Part, own_part, share_sweep
 from runner.sweeps.plan import Plan
 from runner.sweeps.queue import Queue
-from runner.sweeps.status import at_work
+from runner.sweeps.remote import GO_ON, check_address, remote_workers
 from runner.sweeps.typed import plan_typed
 from runner.sweeps.work import Report, find_calibrated
 from runner.sweeps.writer import Rules, TraceKeeping, one_in
 
 _DAMAGE_SHOWN = 10
 _LOOKED_AT = 100  # cells
-_SCRATCH = "scratch"  # folder in that of a sweep, for temporary files of its processes
+_SCRATCH = "scratch-"  # start of the names of folders for temporary files of a command
 _ALL_TRACES_UP_TO = 3000  # runs; with more, sweep.trace=auto is sample
 
 
@@ -53,7 +55,8 @@ class Engine:
 
     Attributes:
         workers: Number of worker processes on this machine; 0 for the current process.
-        address: Address of a running Dask scheduler, such as tcp://127.0.0.1:8786; then `workers` has no effect.
+        address: Address of a running Dask scheduler, such as tcp://127.0.0.1:8786, or its scheduler file; then
+            `workers` has no effect.
     """
 
     workers: int
@@ -62,6 +65,8 @@ class Engine:
     def __post_init__(self) -> None:
         if isinstance(self.workers, bool) or not isinstance(self.workers, int) or self.workers < 0:
             raise ConfigError(f"hydra.sweeper.workers: must be a whole number, 0 or more; found {self.workers!r}")
+        if self.address is not None:
+            check_address(self.address)
 
 
 @dataclass(frozen=True)
@@ -77,6 +82,7 @@ class Ended:
         left: Number of runs that are missing because the sweep stopped at the first failure.
         stored: Number of cached runs.
         resolved: Values that differ between the configs of the runs.
+        part: Part of the sweep that the other attributes but the folder describe, as K/N; empty for the whole.
     """
 
     folder: Path
@@ -87,6 +93,7 @@ class Ended:
     left: int
     stored: int = field(compare=False)
     resolved: Resolved = field(compare=False)
+    part: str = ""
 
 
 def sweep_typed(arguments: Sequence[str], of_sweeper: Sequence[str], source: Composer, command: str) -> Ended:
@@ -130,31 +137,33 @@ def run_sweep(plan: Plan, engine: Engine, command: str, accept_cut_short: bool =
 
     Raises:
         ConfigError: if a cell cannot be run, or the sweep exceeds a limit; no run has been started.
-        StoreError: if a result cannot be written, or a worker fails.
-        RunnerError: if another sweep is at work in the same folder, or the Dask scheduler does not answer.
+        StoreError: if the sweep cannot be written.
+        RunnerError: if the Dask scheduler does not answer.
+        TemporaryError: if a run cannot be written, or a worker fails; finished runs are stored.
     """
+    plan = own_part(plan)
     checked = check(plan)
     names, outputs = checked.names, checked.outputs
     progress.begin("looking for stored runs")
     store.prepare(outputs)
-    with at_work(outputs):
-        folder = _write_sweep(plan, checked, command)
+    folder = share_sweep(plan, checked, command) if isinstance(plan, Part) else write_sweep(plan, checked, command)
+    with at_work(folder) as name:
         note(folder)
-        rules = replace(make_rules(checked.first.sweep, folder, len(names)), accept_cut_short=accept_cut_short)
+        rules = make_rules(checked.first.sweep, folder, len(plan.whole), name)
+        rules = replace(rules, accept_cut_short=accept_cut_short)
         ends, stored = make_missing(plan, checked, rules, engine)
     failed = [(cell, ends[names[cell]]) for cell in ends.failed.tolist()]
     failures = [(plan.overrides(cell), end.failure, rules.details(end.name)) for cell, end in failed]
-    return Ended(folder, outputs, names, ends, failures, len(ends.left), stored, checked.resolved)
+    part = plan.name if isinstance(plan, Part) else ""
+    return Ended(folder, outputs, names, ends, failures, len(ends.left), stored, checked.resolved, part)
 
 
 def make_missing(plan: Plan, checked: Checked, rules: Rules, engine: Engine) -> tuple[Ends, int]:
     """Execute the missing runs and calibrations of a checked plan; return the outcomes and the number of cached ones.
 
-    The caller holds the lock of the outputs folder.
-
     Raises:
         ConfigError: if the jobs exceed a limit of CPU time or memory.
-        StoreError: if a result cannot be written, or a worker fails.
+        TemporaryError: if a result cannot be written, or a worker fails.
     """
     names = checked.names
     ends = find_stored(checked, rules)
@@ -165,9 +174,11 @@ def make_missing(plan: Plan, checked: Checked, rules: Rules, engine: Engine) -> 
         for report in make_jobs(plan, checked, queue, left, engine, stored):
             ends.add(report.outcomes)
             if report.trouble:
-                raise StoreError(f"{report.trouble}; {GO_ON}")
+                raise TemporaryError(f"{report.trouble}; {GO_ON}")
             if rules.stop_at_failure and any(end.failure for end in report.outcomes):
                 break
+    except StoreError as error:  # of the command itself, as its record of the pace
+        raise TemporaryError(f"{error}; {GO_ON}") from error
     except KeyboardInterrupt:  # no worker is left to finish its run
         clean(rules, names)
         raise
@@ -175,7 +186,7 @@ def make_missing(plan: Plan, checked: Checked, rules: Rules, engine: Engine) -> 
     return ends, stored
 
 
-def _write_sweep(plan: Plan, checked: Checked, command: str) -> Path:
+def write_sweep(plan: Plan, checked: Checked, command: str) -> Path:
     """Store the overrides and the hash of each run; return the sweep's folder."""
     axes = plan.axes()
     if axes is not None:
@@ -184,11 +195,10 @@ def _write_sweep(plan: Plan, checked: Checked, command: str) -> Path:
     return store.write_sweep(checked.outputs, runs, command, checked.first.spec.metrics)
 
 
-def make_rules(settings: SweepConfig, folder: Path, runs: int) -> Rules:
-    """Return the rules for a number of runs of a sweep in a folder."""
+def make_rules(settings: SweepConfig, folder: Path, runs: int, command: str) -> Rules:
+    """Return the rules for a number of runs of a sweep in a folder; `command` is the name of at_work."""
     automatic: TraceKeeping = "all" if runs <= _ALL_TRACES_UP_TO else "sample"
-    for name in (_SCRATCH, "logs"):
-        refuse_links(folder.parent.parent, folder / name)
+    refuse_links(folder.parent.parent, folder / "logs")
     folder = folder.resolve()
     return Rules(
         plugins=in_use(),
@@ -198,6 +208,7 @@ def make_rules(settings: SweepConfig, folder: Path, runs: int) -> Rules:
         settings=settings,
         accept_cut_short=settings.retry == "none",
         one_in=one_in(runs),
+        command=command,
     )
 
 
@@ -285,8 +296,11 @@ def _count(checked: Checked, left: int, stored: int) -> str:
 def _workers(queue: Queue, jobs: int, engine: Engine, expected: Estimate) -> Iterator[Iterator[Report]]:
     """Start the workers of a queue, given its expected CPU time; yield an iterator over the reports of its chunks."""
     if engine.address is not None:
-        with remote_client(engine.address) as client, contextlib.closing(on_cluster(queue, client)) as reports:
-            processes = max(1, len(client.nthreads()))
+        with (
+            remote_workers(engine.address) as remote,
+            contextlib.closing(on_cluster(queue, remote.client, remote)) as reports,
+        ):
+            processes = max(1, len(remote.usable()))
             _tell(expected.in_words(processes, processes))
             yield reports
     elif seconds := _seconds_in_process(queue.rules, min(engine.workers, jobs), expected):
@@ -340,16 +354,23 @@ def _tell(text: str) -> None:
 
 
 def _scratch(rules: Rules) -> Path:
-    return rules.sweep / _SCRATCH
+    return rules.sweep / f"{_SCRATCH}{rules.command}"
 
 
 def clean(rules: Rules, names: Sequence[str]) -> None:
-    """Remove temporary files and folders without metrics that killed processes of this or an earlier sweep left."""
-    shutil.rmtree(_scratch(rules), ignore_errors=True)
+    """Remove temporary files and folders without metrics that killed processes of this or an earlier command left.
+
+    If another command is at work in the outputs folder, run folders stay, because it may be writing one of them.
+    """
+    others = {f"{_SCRATCH}{command.name}" for command in commands_at_work(rules.sweep)} - {_scratch(rules).name}
+    for folder in rules.sweep.glob(f"{_SCRATCH}*"):
+        if folder.name not in others:
+            shutil.rmtree(folder, ignore_errors=True)
     runs = rules.outputs / "runs"
     for folder in (rules.sweep, rules.sweep / "logs", rules.outputs / "shards", rules.outputs / FINER, runs):
         remove_leftovers(folder)
-    there = {entry.name for entry in os.scandir(runs)} if runs.is_dir() else set()
+    is_alone = len(commands_in(rules.outputs)) <= 1
+    there = {entry.name for entry in os.scandir(runs)} if is_alone and runs.is_dir() else set()
     for name in there.intersection(names):
         folder = runs / name
         remove_leftovers(folder)

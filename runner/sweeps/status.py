@@ -1,64 +1,17 @@
-"""Progress of a sweep, from its stored runs and run times, and the lock of its outputs folder."""
+"""Progress of a sweep, from its stored runs, its run times and the commands at work."""
 
 import contextlib
-import fcntl
 import math
-import os
-import time
 from collections import Counter
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
-from runner.base.errors import RunnerError
 from runner.base.machine import Machine
 from runner.store.finished import Finished
 from runner.store.seal import DamagedError, read_json
 from runner.store.sweep import Sweep
-
-_PATIENCE = 1.0  # s; `runner status` holds the lock for an instant
-
-
-@contextlib.contextmanager
-def at_work(outputs: Path) -> Iterator[None]:
-    """Lock an outputs folder against other sweeps; the lock ends with the process, even if that is killed.
-
-    Raises:
-        RunnerError: if another sweep uses the folder.
-    """
-    folder = os.open(outputs, os.O_RDONLY | os.O_DIRECTORY)
-    try:
-        deadline = time.monotonic() + _PATIENCE
-        while not _lock(folder):
-            if time.monotonic() > deadline:
-                raise RunnerError(
-                    f"another sweep is at work in {outputs}; wait for it (`runner status` shows its progress), or "
-                    "choose another folder with outputs=FOLDER"
-                )
-            time.sleep(0.05)
-        yield
-    finally:
-        os.close(folder)
-
-
-def is_at_work(outputs: Path) -> bool:
-    """Return True if a sweep is running in an outputs folder."""
-    folder = os.open(outputs, os.O_RDONLY | os.O_DIRECTORY)
-    try:
-        return not _lock(folder)
-    finally:
-        os.close(folder)
-
-
-def _lock(folder: int) -> bool:
-    try:
-        fcntl.flock(folder, fcntl.LOCK_EX | fcntl.LOCK_NB)
-    except BlockingIOError:
-        return False
-    except OSError:
-        return True  # no file locks: two simultaneous sweeps repeat some runs, which is harmless
-    return True
-
+from runner.sweeps.at_work import Command, commands_at_work
 
 NOTE = "progress.json"
 _MEND = "a sweep at work writes it again"
@@ -73,8 +26,9 @@ class Status:
         failed: Number of stored runs that failed.
         caveats: Number of caveats of each stored cell, in the order of the cells.
         left: Number of missing runs.
-        at_work: True if a sweep is running in the outputs folder.
-        seconds: Remaining time at the last recorded pace, in s; None if no pace is recorded.
+        missing: Cells whose run is missing, ascending.
+        at_work: Commands that work on the sweep.
+        seconds: Remaining time at the last recorded pace of the commands at work, in s; None if no pace is recorded.
         damage: Messages on damaged files, one for each file.
         machines: Number of stored runs of each machine.
     """
@@ -83,7 +37,8 @@ class Status:
     failed: int
     caveats: Sequence[int]
     left: int
-    at_work: bool
+    missing: Sequence[int]
+    at_work: Sequence[Command]
     seconds: float | None
     damage: Sequence[str]
     machines: Mapping[Machine, int]
@@ -103,16 +58,34 @@ def find_status(sweep: Sweep) -> Status:
     pace = None
     with contextlib.suppress(DamagedError):  # the sweep rewrites it every few seconds
         pace = read_pace(sweep.folder)
+    at_work = commands_at_work(sweep.folder)
     return Status(
         done=len(stored),
         failed=sum(bool(end.failure) for end in stored),
         caveats=[end.caveats for name in sweep.hashes if (end := ends[name]) is not None],
         left=left,
-        at_work=is_at_work(sweep.outputs),
-        seconds=None if pace is None else pace * left,
+        missing=[cell for cell, name in enumerate(sweep.hashes) if ends[name] is None],
+        at_work=at_work,
+        seconds=None if pace is None else pace * left / max(1, len(at_work)),
         damage=finished.damage,
         machines=Counter(end.machine for end in stored),
     )
+
+
+def parts_of(cells: Sequence[int], parts: int) -> list[int]:
+    """Return the numbers of the parts of a sweep that contain some of the given cells, ascending; see sweep.part."""
+    return sorted({cell % parts for cell in cells})
+
+
+def in_ranges(numbers: Sequence[int]) -> str:
+    """Return ascending numbers as Slurm takes them for an array, such as "3,17,40-42"."""
+    runs: list[list[int]] = []
+    for number in numbers:
+        if runs and number == runs[-1][-1] + 1:
+            runs[-1].append(number)
+        else:
+            runs.append([number])
+    return ",".join(f"{run[0]}-{run[-1]}" if len(run) > 1 else str(run[0]) for run in runs)
 
 
 def read_pace(folder: Path) -> float | None:

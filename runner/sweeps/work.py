@@ -78,11 +78,15 @@ class Report:
         outcomes: Outcomes of the jobs, including cached ones.
         trouble: Reason why the chunk stopped early, if other runs would fail for the same reason; empty otherwise.
         seconds: Wall-clock time of the chunk, in s.
+        host: Name of the machine that executed the chunk; empty for the process of the command.
+        worker: Address of the worker that executed the chunk; empty for the process of the command.
     """
 
     outcomes: Sequence[store.Outcome]
     trouble: str
     seconds: float
+    host: str = ""
+    worker: str = ""
 
 
 def dask_setup(_worker: object) -> None:
@@ -137,7 +141,7 @@ def find_stored(chunk: Chunk) -> dict[str, store.Outcome]:
 
     Damaged results are left out.
     """
-    found, outputs = {}, chunk.rules.outputs
+    found, outputs, names = {}, chunk.rules.outputs, set(chunk.names)
     for part in chunk.parts:
         find = find_calibrated if part.configs[0].root == CALIBRATION else store.find_outcome
         for name in part.names:
@@ -147,7 +151,7 @@ def find_stored(chunk: Chunk) -> dict[str, store.Outcome]:
                     found[name] = end
     for shard in find_shards(outputs, chunk.name):
         with contextlib.suppress(store.DamagedError):
-            found |= {end.name: end for end in read_outcomes(shard)}
+            found |= {end.name: end for end in read_outcomes(shard) if end.name in names}
     return found
 
 

@@ -31,6 +31,7 @@ class Rules:
         settings: Settings of the sweep; `trace` and `accept_cut_short` are derived from them.
         accept_cut_short: True if a stored run that was aborted counts as done.
         one_in: Number of runs for each run in the sample that keeps its trace.
+        command: Random name of the command, for the names of its files and tasks.
     """
 
     plugins: Sequence[str]
@@ -40,6 +41,7 @@ class Rules:
     settings: SweepConfig
     accept_cut_short: bool
     one_in: int = _SAMPLE
+    command: str = ""
 
     @property
     def stop_at_failure(self) -> bool:

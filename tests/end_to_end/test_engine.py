@@ -29,7 +29,7 @@ def results(ended):
 
 
 def assert_nothing_is_left(folder):
-    assert [path for path in folder.rglob("*") if path.name.startswith(".") or path.name == "scratch"] == []
+    assert [path for path in folder.rglob("*") if path.name.startswith(".") or path.name.startswith("scratch")] == []
 
 
 @pytest.fixture

@@ -50,6 +50,32 @@ def test_a_command_that_is_killed_while_it_writes_loses_doubles_and_leaves_nothi
     assert (tally.runs, tally.lost, tally.doubled, tally.leftovers) == (8, 0, 0, [])
 
 
+@pytest.mark.costs(7)
+@pytest.mark.parametrize(("trace", "calls"), [("all", 6), ("never", 4)])
+def test_a_part_that_is_killed_and_started_again_gives_the_sweep_of_one_command(
+    cli, tmp_path, gate, killed, trace, calls
+):
+    """While it writes a run or a shard; names, metrics and the bytes of the table agree."""
+    grid = ("robot=macro", "plant=rk4", "noise=thesis", "noise.position=0,1e-3", "seed=range(0,6)", "duration=0.1")
+    command = ("-m", *grid, IN_PROCESS, f"sweep.trace={trace}")
+    stored = Stored(tmp_path / "outputs")
+    cli(*command, "sweep.part=2/3")
+    before = len(stored.look())
+    killed(gate.command("os:fsync", calls, *command, "sweep.part=0/3"))
+    assert len(stored.look()) > before
+    cli(*command, "sweep.part=1/3")
+    ended = cli(*command, "sweep.part=0/3")
+    tally = stored.tally(workers=0, commands=1)
+    assert (tally.runs, tally.lost, tally.doubled, tally.leftovers) == (12, 0, 0, [])
+    whole = cli(*command, "-o", "whole")
+    assert ended.folder.name == whole.folder.name
+    for name in ("table.parquet", "table.csv"):
+        one, other = (
+            (cli("table", folder), (folder / name).read_bytes())[1] for folder in (ended.folder, whole.folder)
+        )
+        assert one == other
+
+
 @pytest.mark.costs(5)
 def test_a_worker_that_is_killed_and_its_command_after_it_lose_double_and_leave_nothing(cli, tmp_path, gate):
     """Both between stored runs and such that are to come."""
@@ -88,5 +114,9 @@ def test_a_tuning_that_is_killed_ends_as_if_it_had_not_been(tuned, tmp_path, gat
     assert len(journal.read_text().splitlines()) == 1 + 2 + 2
     other = tuned(FREQUENCY, DAMPING, f"outputs={tmp_path}/killed", trials=12)
     assert other.trials == whole.trials
-    assert not [*(tmp_path / "killed").rglob("*.tmp"), *(tmp_path / "killed").rglob("scratch")]
+    assert not [
+        *(tmp_path / "killed").rglob("*.tmp"),
+        *(tmp_path / "killed").rglob("scratch*"),
+        *(tmp_path / "killed").rglob("at_work-*"),
+    ]
     assert replace(other, folder=whole.folder) == whole

@@ -69,7 +69,7 @@ def test_a_signal_ends_all_processes_and_says_how_to_go_on(tmp_path, gate, numbe
     assert (process.returncode, out) == (code, "")
     assert err.splitlines()[2:] == [f"runner: {word}; finished runs are stored; the same command continues"]
     assert 1 <= len(stored(tmp_path / "outputs")) <= 2
-    assert not list(tmp_path.glob("outputs/sweeps/*/scratch"))
+    assert not list(tmp_path.glob("outputs/sweeps/*/scratch*"))
 
 
 CLOSING = """\

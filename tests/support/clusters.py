@@ -24,7 +24,8 @@ class Cluster:
     """
 
     def __init__(self, folder: Path, workers: int) -> None:
-        self._folder, file = folder, folder / "scheduler.json"
+        self._folder = folder
+        file = self.file
         self._where = ("--scheduler-file", str(file), "--no-dashboard")
         self.workers: list[Process] = []
         self.scheduler = self._start("scheduler", "--host", "127.0.0.1", "--port", "0")
@@ -33,9 +34,14 @@ class Cluster:
         self.address = str(json.loads(file.read_text())["address"])
         self._wait_for_workers()
 
-    def add_worker(self) -> Process:
-        """Start one more worker; return its process."""
-        self._start_workers(1)
+    @property
+    def file(self) -> Path:
+        """The scheduler file."""
+        return self._folder / "scheduler.json"
+
+    def add_worker(self, *options: str) -> Process:
+        """Start one more worker, with options of `dask worker`; return its process."""
+        self._start_workers(1, *options)
         self._wait_for_workers()
         return self.workers[-1]
 
@@ -51,8 +57,8 @@ class Cluster:
             process.kill()
             process.wait(PATIENCE)
 
-    def _start_workers(self, count: int) -> None:
-        self.workers += [self._start("worker", "--nthreads", "1", "--no-nanny") for _ in range(count)]
+    def _start_workers(self, count: int, *options: str) -> None:
+        self.workers += [self._start("worker", "--nthreads", "1", "--no-nanny", *options) for _ in range(count)]
 
     def _wait_for_workers(self) -> None:
         with Client(self.address, set_as_default=False) as client:

@@ -11,7 +11,7 @@ from hydra.core.override_parser.overrides_parser import OverridesParser
 
 from runner import store
 from runner.base.dotted_keys import get
-from runner.base.errors import ConfigError, RunnerError, StoreError
+from runner.base.errors import ConfigError, RunnerError, TemporaryError
 from runner.base.limits import TRIALS
 from runner.config.compose.composer import Composer
 from runner.config.compose.composition_errors import COMPOSITION_ERRORS, explain
@@ -20,10 +20,10 @@ from runner.config.compose.overrides import prepare
 from runner.store.axes import is_simulated
 from runner.store.kinds import note
 from runner.store.names import Names
+from runner.sweeps.at_work import at_work
 from runner.sweeps.check import Checked, check
 from runner.sweeps.plan import Grid, Item, Listed, Plan
 from runner.sweeps.run import Engine, clean, make_jobs, make_missing, make_rules
-from runner.sweeps.status import at_work
 from runner.sweeps.tuning.journal import Journal
 from runner.sweeps.tuning.key import RANGES, Key, read_key
 from runner.sweeps.tuning.objective import Objective, Trial, best
@@ -55,9 +55,9 @@ def tune(
 
     Raises:
         ConfigError: if a key cannot be tuned, or a config in its range cannot be run; no trial has been started.
-        RunnerError: if there are too many trials, a run lacks a metric, another sweep uses the outputs folder, or the
+        RunnerError: if there are too many trials, a run lacks a metric, another command works on the tuning, or the
             Dask scheduler does not answer.
-        StoreError: if a result cannot be written, or a worker fails.
+        TemporaryError: if a result cannot be written, or a worker fails.
     """
     if excess := TRIALS.excess(trials):
         raise RunnerError(f"the tuning {excess}; take fewer")
@@ -74,13 +74,14 @@ def tune(
     _check_numbers(Grid(shared, loader), keys)
     plan, checked = _check_ranges(loader, shared, keys)
     shown = [text for text in shared if is_simulated(text)]
+    if checked.first.sweep.part is not None:
+        raise ConfigError("sweep.part: a tuning has no parts, because its trials follow from each other; leave it out")
     study = Study(shown, keys, objectives, at_once, command)
     seed = cast(int, plan.composed(0).resolved["seed"])
     store.prepare(checked.outputs)
-    with at_work(checked.outputs):
-        folder = study.folder(checked.outputs, checked.names)
-        rules = replace(make_rules(checked.first.sweep, folder, trials), trace="all")
-        folder.mkdir(parents=True, exist_ok=True)
+    folder = study.folder(checked.outputs, checked.names)
+    with at_work(folder, exclusive=True) as name:
+        rules = replace(make_rules(checked.first.sweep, folder, trials, name), trace="all")
         journal = Journal(folder / JOURNAL, keys, objectives)
         study.write(folder, journal.trials)
         note(folder)
@@ -101,7 +102,7 @@ def _work_off(plan: Plan, checked: Checked, queue: TrialQueue, engine: Engine, e
     while queue.left:
         for report in make_jobs(plan, checked, queue, np.zeros(queue.left, dtype=np.intp), engine, ended):
             if report.trouble:
-                raise StoreError(f"{report.trouble}; finished trials are stored; the same command continues")
+                raise TemporaryError(f"{report.trouble}; finished trials are stored; the same command continues")
             queue.note(report.outcomes)
             if queue.rules.stop_at_failure and any(end.failure for end in report.outcomes):
                 return

@@ -101,7 +101,7 @@ def test_no_result_is_made_where_a_folder_is_a_link(victim, tmp_path, name):
         prepare(tmp_path / "stranger")
 
 
-@pytest.mark.parametrize("place", ["", "scratch", "logs"])
+@pytest.mark.parametrize("place", ["", "logs"])
 def test_no_sweep_is_made_through_a_link(cli, victim, place):
     sweep = cli("-m", *TASK, "seed=0,1", "-o", "stranger").folder
     linked = sweep / place

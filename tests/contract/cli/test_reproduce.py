@@ -13,7 +13,6 @@ from runner.study.execute import make_all
 from runner.study.measured import Measured, finding
 from runner.study.study import load_study
 from runner.sweeps import job as workers
-from runner.sweeps.status import at_work
 
 FILES = {
     "study.yaml": "title: T\nsource: S\nabstract: A\nchapters: [one.md, two.md]\n",
@@ -101,12 +100,6 @@ def test_only_how_runs_are_made_can_be_set(cli, small_study):
     ending = cli("reproduce", "small", HERE, "limits.cpu_hours=1e-9")
     assert ending.code == 2
     assert "limits.cpu_hours: 3 runs would take about" in ending.err
-
-
-def test_one_at_a_time_works_in_a_folder(cli, small_study, tmp_path):
-    (tmp_path / "outputs").mkdir()
-    with at_work(tmp_path / "outputs"):
-        assert "another sweep is at work in outputs" in cli("reproduce", "small", HERE).err
 
 
 def test_calibrations_are_made_by_the_same_engine(small_study, tmp_path):

@@ -1,6 +1,10 @@
 """`runner status` of sweeps: done, left, at work, failed."""
 
+import os
+import re
 import shutil
+import socket
+import time
 from dataclasses import replace
 
 import pytest
@@ -9,7 +13,7 @@ from support.printed import without_caveats
 from runner.base.machine import this_machine
 from runner.store import open_runs
 from runner.store.seal import sealed_json
-from runner.sweeps.status import at_work
+from runner.sweeps.at_work import at_work
 
 
 @pytest.fixture
@@ -32,10 +36,25 @@ def test_what_is_left_is_counted_with_the_way_to_go_on(cli, sweep):
 
 def test_a_sweep_at_work_says_how_long_it_will_take(cli, sweep):
     shutil.rmtree(open_runs(sweep)[0].folder)
-    with at_work(sweep.parent.parent):
-        assert without_caveats(cli("status", sweep).out) == "3 runs: 2 done, 1 left\nat work\n"
+    here = rf"{re.escape(socket.gethostname())}, process {os.getpid()}, last sign \d s ago"
+    with at_work(sweep):
+        assert re.fullmatch(rf"at work \({here}\)", cli("status", sweep).out.splitlines()[-1])
         (sweep / "progress.json").write_bytes(sealed_json({"seconds_per_run": 100.0}))
-        assert without_caveats(cli("status", sweep).out) == "3 runs: 2 done, 1 left\nat work, about 2 min to go\n"
+        assert re.fullmatch(rf"at work \({here}\), about 2 min to go", cli("status", sweep).out.splitlines()[-1])
+        with at_work(sweep):
+            line = cli("status", sweep).out.splitlines()[-1]
+            assert re.fullmatch(rf"at work \({here}; {here}\), about 50 s to go", line)
+    assert cli("status", sweep).out.splitlines()[-1].startswith("not at work")
+
+
+def test_a_command_of_another_machine_is_at_work_until_it_gives_no_sign(cli, sweep):
+    shutil.rmtree(open_runs(sweep)[0].folder)
+    sign = sweep / "at_work-1234"
+    sign.write_text("n1\njob 16_3\n")
+    for age, expected in ((30, "at work (n1, job 16_3, last sign 30 s ago)"), (130, "not at work; continue with: ")):
+        os.utime(sign, (time.time() - age, time.time() - age))
+        assert cli("status", sweep).out.splitlines()[-1].startswith(expected)
+    assert "nothing is removed" not in cli("results", "--delete", "0d", "--yes").err
 
 
 def test_failed_runs_are_counted_in_shards_too(cli):

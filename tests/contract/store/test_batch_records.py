@@ -75,7 +75,7 @@ def test_rows_of_texts_stand_in_a_shard_beside_runs(tmp_path, repetitions):
     ]
     alone = record_alone(metrics, 3, found[3], provenances[3])
     path = write_shard(
-        tmp_path, shard_name(1, 1), [*rows[:3], Run(tmp_path / "runs" / "a3", config, alone, "<robot/>")]
+        tmp_path, shard_name(1, "a", 1), [*rows[:3], Run(tmp_path / "runs" / "a3", config, alone, "<robot/>")]
     )
     assert list(read_outcomes(path)) == [row.outcome for row in rows]
     columns = read_columns(path, ["run"], METRIC)

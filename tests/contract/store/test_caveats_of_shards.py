@@ -17,7 +17,7 @@ def make(outputs, name, **record):
 
 
 def test_a_shard_carries_them(tmp_path):
-    path = write_shard(tmp_path, shard_name(1, 1), [make(tmp_path, "a", caveats=[CAVEAT]), make(tmp_path, "b")])
+    path = write_shard(tmp_path, shard_name(1, "a", 1), [make(tmp_path, "a", caveats=[CAVEAT]), make(tmp_path, "b")])
     assert [end.caveats for end in read_outcomes(path)] == [1, 0]
     assert Finished(tmp_path).open("a").caveats == [CAVEAT]
     assert Finished(tmp_path).open("b").caveats == []

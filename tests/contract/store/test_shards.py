@@ -39,7 +39,7 @@ def make(outputs, name, failure=None, **record):
 
 def test_what_goes_in_comes_out(tmp_path):
     runs = [make(tmp_path, "a"), make(tmp_path, "b", FAILURE), make(tmp_path, "c", CUT_SHORT)]
-    path = write_shard(tmp_path, shard_name(7, 1), runs)
+    path = write_shard(tmp_path, shard_name(7, "a", 1), runs)
     finished = Finished(tmp_path)
     for run in runs:
         found = finished.open(run.hash)
@@ -54,8 +54,8 @@ def test_what_goes_in_comes_out(tmp_path):
     with pytest.raises(StoreError, match="no folder"):
         finished.open("d")
     assert list((tmp_path / "shards").iterdir()) == [path]
-    assert path.name.startswith("00000000000000000007-000001.")
-    assert find_shards(tmp_path, shard_name(7, 1)) == [path]
+    assert path.name.startswith("00000000000000000007-a-000001.")
+    assert find_shards(tmp_path, shard_name(7, "a", 1)) == [path]
 
 
 def test_the_machine_of_each_run_is_kept_and_an_earlier_shard_has_none(tmp_path):
@@ -63,7 +63,7 @@ def test_the_machine_of_each_run_is_kept_and_an_earlier_shard_has_none(tmp_path)
     machines = [Machine("Alpha", numpy="X86_V3"), Machine("Beta", numpy="X86_V4")]
     for run, machine in zip(runs, machines, strict=False):
         run.record["provenance"]["machine"] = machine.record()
-    path = write_shard(tmp_path, shard_name(1, 1), runs)
+    path = write_shard(tmp_path, shard_name(1, "a", 1), runs)
     finished = Finished(tmp_path)
     assert [finished.outcome(name).machine for name in "abc"] == [*machines, Machine("m")]
     table = pyarrow.parquet.read_table(path).drop_columns("machine")
@@ -75,11 +75,11 @@ def test_the_machine_of_each_run_is_kept_and_an_earlier_shard_has_none(tmp_path)
 
 def test_shards_are_numbered_without_a_clock(tmp_path):
     assert next_number(tmp_path) == 1
-    write_shard(tmp_path, shard_name(1, 3), [make(tmp_path, "a")])
+    write_shard(tmp_path, shard_name(1, "a", 3), [make(tmp_path, "a")])
     assert next_number(tmp_path) == 2
     (tmp_path / "shards" / "01795000000000000000-000001.parquet").touch()  # of the version that took the clock
     assert next_number(tmp_path) == 1795000000000000001
-    assert shard_name(1795000000000000001, 1) > "01795000000000000000-000001"
+    assert shard_name(1795000000000000001, "a", 1) > "01795000000000000000-000001"
 
 
 @pytest.mark.parametrize("numbers", [(1, 2), (2, 1)])
@@ -88,14 +88,14 @@ def test_shards_are_numbered_without_a_clock(tmp_path):
 )
 def test_of_two_outcomes_the_better_counts_whichever_is_later(tmp_path, numbers, worse, better):
     for number, failure in zip(numbers, (worse, better), strict=True):
-        write_shard(tmp_path, shard_name(number, 1), [make(tmp_path, "a", failure), make(tmp_path, f"b{number}")])
+        write_shard(tmp_path, shard_name(number, "a", 1), [make(tmp_path, "a", failure), make(tmp_path, f"b{number}")])
     assert Finished(tmp_path).open("a").failure_record == better
 
 
 def test_of_two_alike_the_later_counts(tmp_path):
     for number in (9, 10):
         again = {**CUT_SHORT, "reason": f"attempt {number}"}
-        write_shard(tmp_path, shard_name(number, 1), [make(tmp_path, "a", again)])
+        write_shard(tmp_path, shard_name(number, "a", 1), [make(tmp_path, "a", again)])
     assert Finished(tmp_path).outcome("a").failure == "cut short: attempt 10"
 
 

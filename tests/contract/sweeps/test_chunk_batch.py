@@ -44,7 +44,7 @@ def whole_chunk(plan):
     checked = check(plan)
     store.prepare(checked.outputs)
     folder = store.write_sweep(checked.outputs, [(plan.overrides(n), checked.names[n]) for n in range(len(plan))], "x")
-    rules = make_rules(checked.first.sweep, folder, len(plan))
+    rules = make_rules(checked.first.sweep, folder, len(plan), "a")
     queue = Queue(plan.alike, checked.names, checked.costs, np.arange(len(plan)), rules)
     return queue._chunk(range(len(plan)))
 

@@ -71,6 +71,7 @@ def test_workers_take_the_rest_of_what_takes_longer_than_expected(tmp_path, monk
     monkeypatch.setattr(run, "estimate", lambda *_: Estimate(0.1))
     monkeypatch.setattr(run.os, "cpu_count", lambda: 2)
     monkeypatch.setattr(run, "time", SimpleNamespace(monotonic=clock))
+    monkeypatch.setattr("runner.sweeps.queue._SECONDS_PER_CHUNK", 1e-9)  # each run is a chunk
     plan = plan_sweep([*SHORT, f"outputs={tmp_path}", ASKED, "controller.period=0.005,0.01,0.02,0.025,0.05"])
     ended = run_sweep(plan, Engine(4, None), "runner -m ...")
     assert len(ended.ends) == 5

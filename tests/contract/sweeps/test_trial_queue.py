@@ -14,7 +14,7 @@ from runner.sweeps.tuning.study import Study
 from runner.sweeps.work import work
 from runner.sweeps.writer import Rules
 
-SETTINGS = SweepConfig(trace="auto", retry="none", on_failure="continue", attempts=1, time_limit=None)
+SETTINGS = SweepConfig(trace="auto", retry="none", on_failure="continue", attempts=1, time_limit=None, part=None)
 
 
 @pytest.fixture

@@ -9,7 +9,7 @@ from runner.base.errors import ConfigError, RunnerError, StoreError
 from runner.store import SchemaError
 from runner.store.listing import list_entries, runs_of_sweeps
 from runner.store.seal import sealed_json
-from runner.sweeps.status import at_work
+from runner.sweeps.at_work import at_work
 from runner.sweeps.tuning.study import JOURNAL, open_tuning
 
 DIVERGES = ("plant=rk4", "controller.singularity_damping=0", "duration=1")
@@ -208,11 +208,15 @@ def test_a_metric_that_these_runs_do_not_have_is_told(tuned):
         tuned(objectives=(("macro_settling_time", "minimize"),))
 
 
-def test_two_at_once_in_one_folder(tuned, tmp_path, monkeypatch):
-    monkeypatch.setattr("runner.sweeps.status._PATIENCE", 0.1)
-    (tmp_path / "outputs").mkdir()
-    with at_work(tmp_path / "outputs"), pytest.raises(RunnerError, match="another sweep is at work"):
-        tuned()
+def test_two_commands_at_once_on_one_tuning(tuned, monkeypatch):
+    monkeypatch.setattr("runner.sweeps.at_work._PATIENCE", 0.1)
+    folder = tuned(trials=1).folder
+    with (
+        at_work(folder, exclusive=True),
+        pytest.raises(RunnerError, match=r"another command is at work on .*, process "),
+    ):
+        tuned(trials=2)
+    assert len(tuned(trials=2).trials) == 2
 
 
 def test_a_damaged_tuning_is_told(tuned):

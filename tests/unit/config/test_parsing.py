@@ -9,7 +9,7 @@ from runner.config.parsing import Problems, group_of, parse, parse_kind
 from runner.controllers import CONTROLLERS
 from runner.sensing.force_torque import IDEAL
 
-SWEEP = {"trace": "auto", "retry": "none", "on_failure": "stop", "attempts": 2, "time_limit": None}
+SWEEP = {"trace": "auto", "retry": "none", "on_failure": "stop", "attempts": 2, "time_limit": None, "part": None}
 
 
 def test_values_that_fit_make_the_model():

@@ -15,11 +15,12 @@ OTHERS = {
     "config/json_schema.py", "config/judgement.py", "config/limits.py", "controllers/stability.py", "doctor",
     "metrics/caveats", "plants/servo_contact_stability.py", "plugins/discovery.py", "plugins/folder_code.py",
     "recordings", "reporting", "schema/model.py", "schema/units.py", "simulation/provenance.py",
-    "simulation/tick_time.py", "statistics", "store", "studies", "study", "sweeps/batch.py", "sweeps/check.py",
-    "sweeps/closed_nodes.py", "sweeps/deadline.py", "sweeps/differing.py", "sweeps/engine.py", "sweeps/estimate.py",
-    "sweeps/finer_step.py", "sweeps/gathering.py", "sweeps/job.py", "sweeps/measurements.py", "sweeps/outcomes.py",
-    "sweeps/plan.py", "sweeps/preview.py", "sweeps/queue.py", "sweeps/rerun.py", "sweeps/rounding.py",
-    "sweeps/run.py", "sweeps/status.py", "sweeps/swept.py", "sweeps/table.py", "sweeps/template.py", "sweeps/tuning",
+    "simulation/tick_time.py", "statistics", "store", "studies", "study", "sweeps/at_work.py", "sweeps/batch.py",
+    "sweeps/check.py", "sweeps/closed_nodes.py", "sweeps/deadline.py", "sweeps/differing.py", "sweeps/engine.py",
+    "sweeps/estimate.py", "sweeps/finer_step.py", "sweeps/gathering.py", "sweeps/job.py", "sweeps/measurements.py",
+    "sweeps/outcomes.py", "sweeps/part.py", "sweeps/plan.py", "sweeps/preview.py", "sweeps/queue.py",
+    "sweeps/remote.py", "sweeps/rerun.py", "sweeps/rounding.py", "sweeps/run.py", "sweeps/slurm.py",
+    "sweeps/status.py", "sweeps/swept.py", "sweeps/table.py", "sweeps/template.py", "sweeps/tuning",
     "sweeps/typed.py", "sweeps/work.py", "sweeps/writer.py", "symbolic/cache.py",
 }  # fmt: skip
 TREE = {

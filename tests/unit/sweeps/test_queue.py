@@ -11,7 +11,7 @@ from runner.sweeps.queue import Queue
 from runner.sweeps.work import Report
 from runner.sweeps.writer import Rules
 
-SETTINGS = SweepConfig(trace="auto", retry="none", on_failure="continue", attempts=1, time_limit=None)
+SETTINGS = SweepConfig(trace="auto", retry="none", on_failure="continue", attempts=1, time_limit=None, part=None)
 
 
 def alike(cells):
@@ -77,3 +77,8 @@ def test_ticks_of_chunks_under_way_count_until_the_chunk_has_ended(tmp_path):
     queue.learn(Report([Outcome(name, "", False) for name in first.names], "", 1.0))
     queue.tell(first.name, 90)  # reported late
     assert queue.ticks_made == 100 + 70
+
+
+def test_a_single_worker_shares_with_nobody(tmp_path):
+    assert [len(cells) for cells in drain(tmp_path, [100] * 250, 1e-5, workers=1)] == [1, 249]
+    assert len(drain(tmp_path, [100] * 250, 1e-3, workers=1)) == pytest.approx(25, abs=3)  # a second each
