@@ -41,7 +41,7 @@ class MadeUp(NamedTuple):
         kinds: Registry.
         name: Name of the kind, and of its option.
         keys: Its own keys with their values.
-        members: Members of its module beside CONFIG.
+        members: Members of its module without CONFIG.
         derived: Model and option of the config that its own is derived from.
     """
 

@@ -160,7 +160,7 @@ SCENES: Mapping[str, Scene] = {
         ["controller.check_stability", "controller.tip_speed", "controller.limit_approach", "robot.tool.tip_radius",
          "controller.sensor", "noise.velocity_bandwidth"],
     ),
-    "felt by a sensor of its own": Scene(f"{_FEELS} {_TOOL} {_SENSOR}", ["controller.sensor"]),
+    "felt by an own sensor": Scene(f"{_FEELS} {_TOOL} {_SENSOR}", ["controller.sensor"]),
     "to a far goal": Scene(f"{_HELD} trajectory=goal", ["controller.tip_speed", "controller.limit_approach"]),
     "bouncing": Scene(
         f"{_HELD} {_TOOL} environment=wall environment.stiffness=1e6 environment.distance=-1e-4 "
@@ -173,7 +173,7 @@ SCENES: Mapping[str, Scene] = {
         ["controller.actuated_stages", "controller.sensor"],
         ["environment=sticky_wall"],
     ),
-    "wall with a sensor of its own": Scene(f"{_WALL} {_SENSOR}", ["controller.sensor"]),
+    "wall with an own sensor": Scene(f"{_WALL} {_SENSOR}", ["controller.sensor"]),
     "along the wall": Scene(f"robot=mini {_WALL} trajectory=quintic", ["controller.feedforward"]),
     "wall of stages": Scene(f"robot=combined {_WALL}", ["controller.actuated_stages"]),
     "unfelt": Scene(

@@ -130,7 +130,7 @@ def unwalked() -> list[tuple[str, str]]:
         except ConfigError:
             resolved = compose(base_of(name, "rk4_flexible")).resolved  # motor_pd takes the springs of the plant
         walked |= _changed_in(name, resolved)
-    for engine_name in ("bullet", "mujoco", "rk4_flexible", "rk4_flexible_links"):  # each has keys of its own
+    for engine_name in ("bullet", "mujoco", "rk4_flexible", "rk4_flexible_links"):  # each has own keys
         walked |= _changed_in("arm", compose(base_of("arm", engine_name)).resolved)
     missing = [(kind, key) for kind, key in known_keys() if (kind, key) not in walked and not _is_in(key, LEFT_OUT)]
     return sorted([*missing, *(("plant", kind) for kind in PLANTS.names() if kind not in ENGINES)])

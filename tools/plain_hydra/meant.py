@@ -1,6 +1,6 @@
 """Differences from plain Hydra that are meant, each with its reason.
 
-A reason alone hides no fault: a refusal of the runner has the words of its row, and the cells are those that plain
+No reason hides a fault: a refusal of the runner has the words of its row, and the cells are those that plain
 Hydra composes as single runs of what is meant.
 """
 
@@ -79,7 +79,11 @@ MEANT = (
     Meant(r"params=\{duration: null\} \| ", _PARAMS, "params={} | duration=null | "),
     Meant(r"params=\{noise: \{position: '(.*)'\}\}", _PARAMS, r"params={noise.position: '\1'}"),
     Meant(r"nope|nonsense|(?<![+\w])robot\.note", "unknown keys are judged after composition, all at once"),
-    Meant(r"robot=combined.*period\.macro=", "one stage may get a value of its own where all share a reference"),
+    Meant(
+        r"(?<=controller\.period)\.macro=0\.01,0\.02",
+        "stages may get different values where all share a reference; OmegaConf 2.4.1rc1 changes what is referred to",
+        "={macro:0.01,mini:0.001},{macro:0.02,mini:0.001}",
+    ),
     Meant(r"oc\.env", "no override calls a function", refusal="calls a function"),
 )
 

@@ -93,7 +93,8 @@ def _is_float(resolved: Mapping[str, Any], place: Place) -> bool:
     group, *rest = [str(part) for part in place]
     options = resolved.get(group)
     kind = options.get("kind") if rest and isinstance(options, Mapping) else None
-    found = [model.find_field(rest or [group]) for model in _models(group if rest else "", rest, kind)]
+    chosen = kind if isinstance(kind, str) else None  # validation rejects any other
+    found = [model.find_field(rest or [group]) for model in _models(group if rest else "", rest, chosen)]
     types: list[Any] = [field.annotation for field in found if field is not None]
     return bool(types) and all(map(_holds_floats, types))
 

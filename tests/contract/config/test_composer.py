@@ -47,7 +47,7 @@ def outcome(way, *arguments):
         (
             "robot=combined",
             "noise.position={macro: 1e-3, mini: 0}",
-            "controller.period.mini=2e-3",
+            "controller.singularity_damping=0.2",
             "trajectory.goal=[0.3,0.1,0.2]",
             "outputs=/some/where else",
         ),

@@ -19,6 +19,7 @@ ABOVE_ZERO = "must be a number above 0, or a list of such numbers with one for e
         ("~noise", "noise: must be a group of keys; found None"),
         ("~noise.velocity", "noise.velocity: missing"),
         ("~plant.kind", "plant.kind: missing; known: bullet, "),
+        ("environment.kind=10", "environment.kind: '10' is unknown; known: free, "),
         ("plant.kind=bulet", "plant.kind: 'bulet' is unknown (did you mean bullet?); known: bullet, "),
         (
             "noise.velocity=exakt",

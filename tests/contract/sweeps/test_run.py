@@ -94,7 +94,7 @@ def test_a_sweep_may_stop_at_the_first_failure_and_go_on_later(sweep, simulated_
     ended = sweep(*overrides, "sweep.on_failure=stop")
     assert (len(simulated_runs), len(ended.failures), ended.left) == (1, 1, 3)
     ended = sweep(*overrides)
-    assert (len(simulated_runs), len(ended.failures), ended.left) == (4, 1, 0)
+    assert (len(runs(ended)), len(ended.failures), ended.left) == (4, 1, 0)
 
 
 @pytest.mark.costs(2)
