@@ -1,7 +1,6 @@
 """Simulate one run, or every combination of the listed values.
 
-An override sets a key or chooses from a group, as controller.period=5ms or robot=macro. A line without a command is a
-run. `runner sweep` is the same as `runner -m`.
+An override sets a key or chooses from a group. `runner sweep` is the same as `runner -m`.
 
 Example: runner sweep robot=macro trajectory=quintic controller=computed_torque,joint_pd seed=0,1
 """
@@ -67,9 +66,7 @@ def _add_own(parser: Parser) -> None:
         json="with --dry-run: print all cells as JSON",
     )
     parser.add_argument("--dry-run", action="store_true", help="print cells and expected time; simulate nothing")
-    parser.add_argument(
-        "--slurm", type=count, metavar="N", help="print a script for a job array of N tasks; submit nothing"
-    )
+    parser.add_argument("--slurm", type=count, metavar="N", help="print the script of a job array of N tasks")
 
 
 def run(arguments: Namespace) -> int:

@@ -51,7 +51,7 @@ def test_a_command_that_is_killed_while_it_writes_loses_doubles_and_leaves_nothi
 
 
 @pytest.mark.costs(7)
-@pytest.mark.parametrize(("trace", "calls"), [("all", 6), ("never", 4)])
+@pytest.mark.parametrize(("trace", "calls"), [("all", 6), ("never", 3)])
 def test_a_part_that_is_killed_and_started_again_gives_the_sweep_of_one_command(
     cli, tmp_path, gate, killed, trace, calls
 ):

@@ -60,7 +60,7 @@ def _things(outputs: Path) -> Iterator[tuple[str, object]]:
         yield f"{folder}/urdf", lambda folder=folder: store.open_run(folder).urdf
         yield f"{folder}/values", lambda folder=folder: _values(store.open_run(folder))
     for path in shard_files(outputs):
-        yield f"{path.parent}/{path.name[:27]}", lambda path=path: _shard(path)
+        yield f"{path.parent}/{path.name.partition('.')[0]}", lambda path=path: _shard(path)
     for folder in sorted((outputs / "sweeps").iterdir()):
         yield f"{folder}", lambda folder=folder: _sweep(folder)
         yield f"{folder}/progress", lambda folder=folder: read_pace(folder)
