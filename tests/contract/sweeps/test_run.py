@@ -259,7 +259,7 @@ def test_a_full_disk_stops_the_sweep_which_goes_on_later(sweep, simulated_runs, 
 
     def fill_up(file):
         calls.append(file)
-        if len(calls) > (8 if trace == "all" else 5):
+        if len(calls) > (8 if trace == "all" else 4):
             raise OSError(errno.ENOSPC, os.strerror(errno.ENOSPC))
         fsync(file)
 
