@@ -74,7 +74,7 @@ class SweepConfig(StrictModel):
     on_failure: Literal["continue", "stop"]
     attempts: PositiveInt
     time_limit: Seconds[PositiveFloat | None]
-    part: Annotated[str, BeforeValidator(_check_part)] | None = None  # configs stored before it have none
+    part: Annotated[str, BeforeValidator(_check_part)] | None
 
 
 def memory_of_run(arm: Robot, ticks: int, repetitions: int, has_contact: bool) -> float:

@@ -177,8 +177,6 @@ def make_missing(plan: Plan, checked: Checked, rules: Rules, engine: Engine) -> 
                 raise TemporaryError(f"{report.trouble}; {GO_ON}")
             if rules.stop_at_failure and any(end.failure for end in report.outcomes):
                 break
-    except StoreError as error:  # of the command itself, as its record of the pace
-        raise TemporaryError(f"{error}; {GO_ON}") from error
     except KeyboardInterrupt:  # no worker is left to finish its run
         clean(rules, names)
         raise
@@ -265,6 +263,7 @@ def make_jobs(
 
     Raises:
         ConfigError: if the jobs exceed a limit of CPU time or memory.
+        TemporaryError: if the time for a job cannot be written.
     """
     _tell(_count(checked, len(cells), stored))
     if not len(cells):
@@ -281,7 +280,7 @@ def make_jobs(
             try:
                 pace.add(len(report.outcomes))
             except StoreError as error:
-                raise StoreError(f"{error}; {GO_ON}") from None
+                raise TemporaryError(f"{error}; {GO_ON}") from None
             yield report
     progress.begin("summing up")
 
