@@ -8,9 +8,10 @@ from pathlib import Path
 
 from runner.base.sanitize import few, quoted
 from runner.doctor.finding import Finding
+from runner.robots.elements import TENSOR, absurd_inertial, moves, number, wrong_places
 from runner.robots.inertials import fix_inertia, impossible_inertia, make_massless, principal_moments
 from runner.robots.joint_dynamics import hold
-from runner.robots.tree import TENSOR, UrdfTree, absurd_inertial, moves, number, wrong_places
+from runner.robots.tree import UrdfTree
 
 _NO_LIMIT = "1e6"  # what the runner takes for none
 

@@ -2,7 +2,6 @@
 
 import copy
 import re
-import xml.etree.ElementTree as ET
 from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
@@ -24,7 +23,8 @@ from runner.doctor.postures import (
 )
 from runner.doctor.starting_point import StartingPoint, judge_home, propose
 from runner.doctor.tip import choose_tip, name_tips
-from runner.robots.description import drop_shapes, read_arm
+from runner.robots.canonical import write_text
+from runner.robots.description import read_arm
 from runner.robots.joint_dynamics import FileDynamics, by_value, dynamics_of
 from runner.robots.mjcf import Mjcf, read_mjcf
 from runner.robots.model import STANDARD_GRAVITY, RobotModel
@@ -148,9 +148,7 @@ def examine(
     findings += [Finding("note", "names", few(original.renamed))] if original.renamed else []
     findings += [*check_placements(tree), *check_meshes(tree, path, packages), *check_links(tree)]
     findings += [*check_joints(tree, tip), *([] if mjcf is None else _left_out(mjcf))]
-    drop_shapes(tree.links)
-    ET.indent(tree.robot)
-    urdf = ET.tostring(tree.robot, encoding="unicode")
+    urdf = write_text(tree.robot)
     arm = None if _refused(findings) else _take(tree, path.name, urdf, tip, findings)
     return Examination(name, path, mjcf, tip, together(findings), urdf, None if _refused(findings) else arm)
 

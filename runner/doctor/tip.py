@@ -5,7 +5,8 @@ import re
 from runner.base.errors import RunnerError, nearest
 from runner.base.sanitize import few
 from runner.doctor.finding import Finding
-from runner.robots.tree import UrdfTree, end_of, moves
+from runner.robots.elements import end_of, moves
+from runner.robots.tree import UrdfTree
 
 _PARTS = r"(_?\d*(_?(link|frame|site|point|body))?)"
 _TIPS = (

@@ -16,7 +16,8 @@ from runner.base.errors import ConfigError, nearest
 from runner.base.lazy_modules import pin
 from runner.base.limits import ExcessError, read_text
 from runner.base.sanitize import quoted
-from runner.robots.tree import TENSOR, UrdfTree, vector_text
+from runner.robots.elements import TENSOR, vector_text
+from runner.robots.tree import UrdfTree
 from runner.schema.model import StrictModel
 from runner.schema.values import expand
 

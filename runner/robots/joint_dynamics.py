@@ -9,8 +9,9 @@ import numpy as np
 from runner.base.arrays import FloatArray
 from runner.base.lazy_modules import pin
 from runner.base.sanitize import few
+from runner.robots.elements import number, vector_text, wrong_places
 from runner.robots.inertials import place_of
-from runner.robots.tree import UrdfTree, number, vector_text, wrong_places
+from runner.robots.tree import UrdfTree
 
 _LONGEST = 300  # characters of a message about omitted content
 

@@ -10,8 +10,8 @@ import numpy as np
 
 from runner.base.arrays import FloatArray
 from runner.base.lazy_modules import pin
+from runner.robots.elements import add_joint, vector_text
 from runner.robots.inertials import make_massless, write_inertial
-from runner.robots.tree import add_joint, vector_text
 
 HOME = "home"  # name of the keyframe that is used
 ON_JOINTS = (mujoco.mjtTrn.mjTRN_JOINT, mujoco.mjtTrn.mjTRN_JOINTINPARENT)

@@ -11,7 +11,8 @@ from runner.base.arrays import FloatArray
 from runner.base.engine_output import caught_output
 from runner.base.errors import ConfigError
 from runner.base.lazy_modules import pin
-from runner.robots.tree import NO_LIMIT, check_tip
+from runner.robots.elements import NO_LIMIT
+from runner.robots.tree import check_tip
 
 STANDARD_GRAVITY = 9.81  # m/s^2, the thesis' value (its G(q) shows 9.81 and 19.62)
 
