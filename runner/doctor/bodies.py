@@ -10,7 +10,7 @@ from runner.base.sanitize import few, quoted
 from runner.doctor.finding import Finding
 from runner.robots.elements import TENSOR, absurd_inertial, moves, number, wrong_places
 from runner.robots.inertials import fix_inertia, impossible_inertia, make_massless, principal_moments
-from runner.robots.joint_dynamics import hold
+from runner.robots.joint_dynamics import hold, rest_position
 from runner.robots.tree import UrdfTree
 
 _NO_LIMIT = "1e6"  # what the runner takes for none
@@ -22,20 +22,25 @@ def check_joints(tree: UrdfTree, tip: str) -> list[Finding]:
     Joints that move and do not lie between base and tip are held: the runner takes serial arms.
     """
     way, findings = tree.way(tip), []
-    for name, joint in tree.joints.items():
-        if moves(joint):
-            findings += _check_joint(tree, name) if name in way else [_hold(tree, name, way)]
+    moving = [name for name, joint in tree.joints.items() if moves(joint)]
+    held = {name: rest_position(tree, name) for name in moving if name not in way}  # before any of them is fixed
+    for name in moving:
+        findings += [_hold(tree, name, held[name], way)] if name in held else _check_joint(tree, name)
     return findings
 
 
-def _hold(tree: UrdfTree, name: str, way: Collection[str]) -> Finding:
+def _hold(tree: UrdfTree, name: str, held: float, way: Collection[str]) -> Finding:
     joint, tie = tree.joints[name], tree.ties.get(name)
     mimic, unit = joint.find("mimic"), "m" if joint.get("type") == "prismatic" else "rad"
     text = "moves, but not the tip" + (f", and {tie}" if tie else "")
     if mimic is not None and mimic.get("joint") in way:
         text += ", which moves the tip: its links no longer move with that"
-    held = hold(tree, name)
-    where = ", as the keyframe 'home' has it" if name in tree.home else ", its limit nearest to zero" if held else ""
+    hold(tree, name, held)
+    where = (
+        ", as the keyframe 'home' has it" if name in tree.home
+        else ", as it mimics" if mimic is not None
+        else ", its limit nearest to zero" if held else ""
+    )  # fmt: skip
     return Finding("fixed", f"joint '{name}'", text, f"now held at {held:.6g} {unit}{where}")
 
 

@@ -146,8 +146,9 @@ def examine(
     tree = copy.deepcopy(original)
     findings = [named, name_tips(original, tip)]
     findings += [Finding("note", "names", few(original.renamed))] if original.renamed else []
+    findings += [Finding("fixed", *change) for change in original.changes]
     findings += [*check_placements(tree), *check_meshes(tree, path, packages), *check_links(tree)]
-    findings += [*check_joints(tree, tip), *([] if mjcf is None else _left_out(mjcf))]
+    findings += [*check_joints(tree, tip), *_left_out(tree, mjcf)]
     urdf = write_text(tree.robot)
     arm = None if _refused(findings) else _take(tree, path.name, urdf, tip, findings)
     return Examination(name, path, mjcf, tip, together(findings), urdf, None if _refused(findings) else arm)
@@ -169,7 +170,8 @@ def _take(tree: UrdfTree, source: str, urdf: str, tip: str, findings: list[Findi
         return None
     generator, (lower, upper) = np.random.default_rng(0), model.usual_range
     postures = generator.uniform(lower, upper, (_POSTURES, model.nq))
-    findings += [*check_tasks(model), *describe_singular(model, postures)]
+    findings += check_tasks(model)
+    findings += [] if _refused(findings) else describe_singular(model, postures)
     if _refused(findings):
         return None
     massless = check_mass_matrix(tree, model, postures)
@@ -181,10 +183,18 @@ def _take(tree: UrdfTree, source: str, urdf: str, tip: str, findings: list[Findi
     return Arm(model, propose(model, postures, home), not massless, dynamics)
 
 
-def _left_out(mjcf: Mjcf) -> list[Finding]:
-    """Return the elements of an MJCF other than bodies, joints and sites."""
-    moves = [Finding("note", "left out of the motion", text) for text in mjcf.left_out.motion]
-    return [*moves, *(Finding("note", "left out", text) for text in mjcf.left_out.rest)]
+def _left_out(tree: UrdfTree, mjcf: Mjcf | None) -> list[Finding]:
+    """Return what a file says of the motion and runs do not have, and the parts of an MJCF without a use.
+
+    Runs of an MJCF go on to say it. A URDF loses it: its copy has no such elements.
+    """
+    if mjcf is not None:
+        moves = [Finding("note", "left out of the motion", text) for text in mjcf.left_out.motion]
+        return [*moves, *(Finding("note", "left out", text) for text in mjcf.left_out.rest)]
+    elements = tree.robot.findall("left_out")
+    for element in elements:
+        tree.robot.remove(element)
+    return [Finding("note", "left out of the motion", element.get("text", "")) for element in elements]
 
 
 def _taken(dynamics: FileDynamics, model: RobotModel) -> list[Finding]:

@@ -13,7 +13,7 @@ import numpy as np
 
 from runner.base.lazy_modules import pin
 from runner.robots.elements import NO_LIMIT, TENSOR, moves, number, numbers, vector_text
-from runner.schema.model import SMALLEST
+from runner.schema.model import LARGEST, SMALLEST
 
 # Parts of each element, and the numbers in its attributes.
 _PARTS: Mapping[str, Sequence[str]] = {
@@ -86,8 +86,10 @@ def canonize(links: Mapping[str, ET.Element], joints: Mapping[str, ET.Element]) 
     for name, joint in joints.items():
         changes += (Change(f"joint '{name}'", *each) for each in _rewrite_values(joint))
         if moves(joint):
-            each_of_joint = (*_complete_axis(joint), *_complete_bounds(joint))
-            changes += (Change(f"joint '{name}'", *each) for each in each_of_joint)
+            said = (*_complete_axis(joint), *_complete_bounds(joint))
+            changes += (Change(f"joint '{name}'", *each) for each in said)
+        for dynamics in joint.findall("dynamics"):
+            dynamics.attrib = {"damping": "0.0", "friction": "0.0"} | dynamics.attrib
     return tuple(changes)
 
 
@@ -98,12 +100,10 @@ def _rewrite_values(whole: ET.Element) -> Iterator[tuple[str, str]]:
             yield from _turn_quaternion(part)
         for key in _NUMBERS.get(part.tag, ()):
             values = numbers(part.get(key, ""))
-            if not values:
-                continue
-            if part.tag == "limit" and math.isinf(values[0]):
-                part.set(key, vector_text([math.copysign(NO_LIMIT, values[0])]))
-                yield f"limit {key} of {values[0]:g}", f"now {part.get(key)}: without limit"
-            else:
+            if part.tag == "limit" and any(map(math.isinf, values)):
+                part.set(key, vector_text(math.copysign(NO_LIMIT, value) for value in values))
+                yield f"{key} limit of {values[0]:g}", "now 1e6 in size: without limit"
+            elif values and all(abs(value) <= LARGEST for value in values):
                 part.set(key, vector_text(values))
 
 

@@ -88,10 +88,16 @@ def absurd_inertial(link: ET.Element) -> Iterator[str]:
 
 
 def wrong_limits(joint: ET.Element) -> Iterator[str]:
-    """Yield messages about invalid limits of a moving joint; missing limits are checked elsewhere."""
-    limit = joint.find("limit")
-    if limit is None or not moves(joint):
+    """Yield messages about missing and invalid limits of a revolute or prismatic joint."""
+    if joint.get("type") not in ("revolute", "prismatic"):
         return
+    limit = joint.find("limit")
+    limit = ET.Element("limit") if limit is None else limit
+    if limit.get("lower") is None and limit.get("upper") is None:
+        yield f"no position limits; give lower and upper, -{NO_LIMIT:g} and {NO_LIMIT:g} for none"
+    for key in ("effort", "velocity"):
+        if limit.get(key) is None:
+            yield f"no {key} limit; give it, {NO_LIMIT:g} for none"
     for key in ("lower", "upper", "effort", "velocity"):
         if limit.get(key) is not None and math.isnan(number(limit, key)):
             yield f"a limit {key}={quoted(limit.get(key))}; allowed: a number"

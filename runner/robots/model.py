@@ -107,6 +107,17 @@ class RobotModel:
         linear: FloatArray = acceleration.linear.copy()
         return linear
 
+    def joint_axes(self, q: FloatArray) -> FloatArray:
+        """Return axis and origin of each joint in the base frame, shape (nq, 6); origins in m."""
+        pin.forwardKinematics(self.pin_model, self._data, q)
+        found = []
+        for joint, place in zip(list(self.pin_model.joints)[1:], list(self._data.oMi)[1:], strict=True):
+            own = joint.createData()
+            joint.calc(own, np.zeros(1))
+            linear, angular = np.split(np.ravel(own.S), 2)
+            found.append([*place.rotation @ (angular if angular.any() else linear), *place.translation])
+        return np.array(found)
+
     def mass_matrix(self, q: FloatArray) -> FloatArray:
         """Return the joint-space mass matrix M(q), shape (nq, nq), in kg m^2 (thesis eq. 3.11)."""
         M: FloatArray = np.triu(pin.crba(self.pin_model, self._data, q))  # crba fills the upper triangle only

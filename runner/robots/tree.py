@@ -8,13 +8,13 @@ from pathlib import Path
 
 from runner.base.errors import ConfigError, nearest
 from runner.base.limits import ARM_PARTS, XML, XML_ATTRIBUTES, XML_ELEMENTS, ExcessError, read_text
-from runner.base.sanitize import quoted
+from runner.base.sanitize import few, quoted
 from runner.robots.canonical import Change, canonize
 from runner.robots.elements import end_of, moves
+from runner.robots.file_extensions import declare_prefixes, drop_definitions, read_motors
 
 _NAME = 200  # characters
 _DEPTH = 20
-_XACRO = "{http://www.ros.org/wiki/xacro}"
 
 
 @dataclass(frozen=True)
@@ -105,12 +105,17 @@ def make_tree(robot: ET.Element, path: Path) -> UrdfTree:
     The element is changed in place: its values become canonical, a robot without a name gets that of its file, and a
     joint with the name of a link is renamed, because engines look up both by name.
     """
+    try:
+        unused = drop_definitions(robot)
+    except ValueError:
+        made = f"{path.name.removesuffix('.xacro').removesuffix('.urdf')}{'_made' * (path.suffix == '.urdf')}.urdf"
+        command = f"xacro {path.name} > {made}"
+        raise ConfigError(
+            f"robot.urdf: {path} uses xacro; make a URDF of it first: {command} (pip has xacro)"
+        ) from None
     links = {link.get("name", ""): link for link in robot.findall("link")}
     if robot.tag != "robot" or not links:
         raise ConfigError(f"robot.urdf: {path} is no URDF: it needs a <robot> with links")
-    if path.suffix == ".xacro" or any(element.tag.startswith(_XACRO) for element in robot.iter()):
-        made = f"{path.name.removesuffix('.xacro').removesuffix('.urdf')}{'_made' * (path.suffix == '.urdf')}.urdf"
-        raise ConfigError(f"robot.urdf: {path} holds xacro macros; make a URDF of it first: xacro {path.name} > {made}")
     robot.set("name", robot.get("name") or path.stem)
     renamed = _rename_joints(robot, links)
     joints = {joint.get("name", ""): joint for joint in robot.findall("joint")}
@@ -131,7 +136,11 @@ def make_tree(robot: ET.Element, path: Path) -> UrdfTree:
         tree = UrdfTree(robot, links, joints, roots[0], ties, renamed=renamed)
         circling = _circling(tree)
         if not circling:
-            return replace(tree, changes=canonize(links, joints))
+            read_motors(robot, joints)
+            left_out = (
+                [Change("xacro", f"definitions that nothing uses: {few(unused)}", "now left out")] if unused else []
+            )
+            return replace(tree, changes=(*left_out, *canonize(links, joints)))
         problems.append(f"the links {', '.join(circling)} run in a circle, apart from the base '{roots[0]}'")
     raise ConfigError(f"robot.urdf: {path}: {problem}; allowed: one tree of links" for problem in problems)
 
@@ -165,12 +174,12 @@ def parse_xml(path: Path, key: str = "robot.urdf") -> ET.Element:
     """
     try:
         text = read_text(path, XML)
-        return ET.fromstring(text, parser=ET.XMLParser(target=_Builder()))  # noqa: S314 - no entities, see there
+        parser = ET.XMLParser(target=_Builder())  # noqa: S314 - no entities, see there
+        return ET.fromstring(declare_prefixes(text), parser=parser)  # noqa: S314
     except ExcessError as error:
         raise ConfigError(f"{key}: {path} {error}") from error
     except (ET.ParseError, ValueError) as error:
-        hint = "; xacro macros? Make a URDF of it first" if "unbound prefix" in str(error) else ""
-        raise ConfigError(f"{key}: {path} is no XML: {error}{hint}") from error
+        raise ConfigError(f"{key}: {path} is no XML: {error}") from error
     except OSError as error:
         raise ConfigError(f"{key}: {path} cannot be read: {error.strerror or error}") from error
 
