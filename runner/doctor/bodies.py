@@ -8,12 +8,12 @@ from pathlib import Path
 
 from runner.base.sanitize import few, quoted
 from runner.doctor.finding import Finding
-from runner.robots.elements import TENSOR, absurd_inertial, moves, number, wrong_places
+from runner.robots.elements import NO_LIMIT, TENSOR, absurd_inertial, moves, number, wrong_places
 from runner.robots.inertials import fix_inertia, impossible_inertia, make_massless, principal_moments
 from runner.robots.joint_dynamics import hold, rest_position
 from runner.robots.tree import UrdfTree
 
-_NO_LIMIT = "1e6"  # what the runner takes for none
+_NONE = repr(NO_LIMIT)
 
 
 def check_joints(tree: UrdfTree, tip: str) -> list[Finding]:
@@ -38,8 +38,9 @@ def _hold(tree: UrdfTree, name: str, held: float, way: Collection[str]) -> Findi
     hold(tree, name, held)
     where = (
         ", as the keyframe 'home' has it" if name in tree.home
+        else "" if not held
         else ", as it mimics" if mimic is not None
-        else ", its limit nearest to zero" if held else ""
+        else ", its limit nearest to zero"
     )  # fmt: skip
     return Finding("fixed", f"joint '{name}'", text, f"now held at {held:.6g} {unit}{where}")
 
@@ -57,8 +58,8 @@ def _check_joint(tree: UrdfTree, name: str) -> list[Finding]:
         limit = ET.SubElement(joint, "limit")
     if kind == "continuous":
         joint.set("type", "revolute")
-        limit.attrib.update(lower=f"-{_NO_LIMIT}", upper=_NO_LIMIT)
-        findings.append(Finding("fixed", place, "continuous", f"now revolute up to {_NO_LIMIT} rad: without limits"))
+        limit.attrib.update(lower=f"-{_NONE}", upper=_NONE)
+        findings.append(Finding("fixed", place, "continuous", "now revolute up to 1e6 rad: without limits"))
     findings += _check_positions(place, joint, limit)
     return findings + [finding for key in ("effort", "velocity") for finding in _check_limit(place, limit, key)]
 
@@ -70,20 +71,18 @@ def _check_positions(place: str, joint: ET.Element, limit: ET.Element) -> list[F
     said = "no position limits" if math.isnan(lower) or math.isnan(upper) else f"limits from {lower:g} to {upper:g}"
     if joint.get("type") == "prismatic":
         return [Finding("refused", place, f"it slides, with {said}", "give lower and upper, in m")]
-    limit.attrib.update(lower=f"-{_NO_LIMIT}", upper=_NO_LIMIT)
-    return [Finding("fixed", place, said, f"now {_NO_LIMIT} rad to both sides: without limits")]
+    limit.attrib.update(lower=f"-{_NONE}", upper=_NONE)
+    return [Finding("fixed", place, said, "now 1e6 rad to both sides: without limits")]
 
 
 def _check_limit(place: str, limit: ET.Element, key: str) -> list[Finding]:
     value = number(limit, key)
     if value > 0.0:
         return []
-    limit.set(key, _NO_LIMIT)
+    limit.set(key, _NONE)
     if math.isnan(value):
         return [Finding("note", place, f"no {key} limit", "give that of the data sheet, if it matters")]
-    return [
-        Finding("fixed", place, f"{key} limit {value:g}, at which nothing moves", f"now {_NO_LIMIT}: without limit")
-    ]
+    return [Finding("fixed", place, f"{key} limit {value:g}, at which nothing moves", "now 1e6: without limit")]
 
 
 def check_links(tree: UrdfTree) -> list[Finding]:

@@ -95,22 +95,26 @@ def _missing_torque(
 
 def _wrong_stops(kind: str, plant: "Bullet | Mujoco", model: RobotModel) -> Iterator[str]:
     """Yield a message about each position limit at which an engine does not stop the joint, or before which it does."""
-    limits, middle = model.position_limits, model.usual_range.mean(axis=0)
-    rest = np.zeros(model.nq)
+    limits = model.position_limits
     for joint, name in enumerate(model.joint_names):
         beside = min(_BESIDE, 0.01 * float(limits[1, joint] - limits[0, joint]))
         for sign, limit in ((-1.0, limits[0, joint]), (1.0, limits[1, joint])):
-            if not np.isfinite(limit) or beside <= 0.0:
-                continue
-            q = middle.copy()
-            q[joint] = limit + sign * beside
-            _missing_torque(plant, model, q, rest, rest)
-            stopped = -sign * plant.dq[joint] / _STEP > _STOPPED
-            q[joint] = limit - sign * beside
-            early = _off(plant, model, q, rest, rest) > _AGREE
-            if early or not stopped:
-                said = "stops before" if early else "does not stop at"
-                yield f"joint '{name}' {said} its limit of {limit:g} {model.joint_units[joint]} in {ENGINES[kind]}"
+            if np.isfinite(limit) and beside > 0.0:
+                before, beyond = (
+                    -sign * _acceleration(plant, model, joint, limit + sign * place) > _STOPPED
+                    for place in (-beside, beside)
+                )
+                if before or not beyond:
+                    said = "stops before" if before else "does not stop at"
+                    yield f"joint '{name}' {said} its limit of {limit:g} {model.joint_units[joint]} in {ENGINES[kind]}"
+
+
+def _acceleration(plant: "Bullet | Mujoco", model: RobotModel, joint: int, position: float) -> float:
+    """Return the acceleration of a joint at a position, held against gravity, in rad/s^2 or m/s^2."""
+    q, rest = model.usual_range.mean(axis=0), np.zeros(model.nq)
+    q[joint] = position
+    _missing_torque(plant, model, q, rest, rest)
+    return float(plant.dq[joint]) / _STEP
 
 
 def _first_difference(engine: str, plant: "Bullet | Mujoco", model: RobotModel) -> str:

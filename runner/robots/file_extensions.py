@@ -54,6 +54,7 @@ def read_motors(robot: ET.Element, joints: Mapping[str, ET.Element]) -> None:
     It is rotor inertia times squared gear ratio, which Drake reads from the actuator of a transmission. Reductions
     without a rotor inertia and springs become elements `<left_out>`.
     """
+    reductions: dict[float, list[str]] = {}
     for name, element in _motors(robot, joints):
         rotor = _sum_of(element, "rotor_inertia", 0.0)
         gear = _sum_of(element, "gear_ratio", _sum_of(element, "mechanicalReduction", 1.0))
@@ -63,15 +64,17 @@ def read_motors(robot: ET.Element, joints: Mapping[str, ET.Element]) -> None:
                 dynamics = ET.SubElement(joints[name], "dynamics")
             dynamics.attrib.setdefault("armature", repr(rotor * gear**2))
         elif abs(gear) != 1.0:
-            text = f"reduction {gear:g} of joint '{name}' without its rotor's inertia (robot.armature)"
-            ET.SubElement(robot, "left_out", text=text, gravity="")
+            reductions.setdefault(gear, []).append(name)
+    for gear, names in reductions.items():
+        text = f"reduction {gear:g} of {few(names)}, because no rotor's inertia is beside it (robot.armature)"
+        ET.SubElement(robot, "left_out", text=text, gravity="")
     sprung = [
         each.get("reference", "")
         for each in robot.findall("gazebo")
         if each.get("reference") in joints and _sum_of(each, "springStiffness", 0.0)
     ]
     if sprung:
-        text = f"springs of the joints {few(sprung)} (springStiffness), which no plant has"
+        text = f"springs of the joints {few(sprung)} (springStiffness); no key"
         ET.SubElement(robot, "left_out", text=text, gravity="")
 
 
