@@ -18,7 +18,8 @@ _STEP = 1e-4  # s
 _AGREE = 1e-6  # of the largest torque: beyond it the engines simulate different arms
 _LEAST = 1e-12  # kg and kg m^2, of MuJoCo's moving links, as in conf/plant/mujoco.yaml
 _BESIDE = 1e-2  # rad or m from a stop, on both sides; at most a hundredth of the range
-_STOPPED = 1.0  # rad/s^2 or m/s^2: least acceleration by which an engine returns a joint into its range
+_OUTWARDS = 0.1  # rad/s or m/s, there
+_STOPPED = 1.0  # rad/s^2 or m/s^2: least acceleration of a stop, which without it is zero
 _SAME = 1e-6  # of axes, origins in m, and moments of inertia
 
 
@@ -101,7 +102,7 @@ def _wrong_stops(kind: str, plant: "Bullet | Mujoco", model: RobotModel) -> Iter
         for sign, limit in ((-1.0, limits[0, joint]), (1.0, limits[1, joint])):
             if np.isfinite(limit) and beside > 0.0:
                 before, beyond = (
-                    -sign * _acceleration(plant, model, joint, limit + sign * place) > _STOPPED
+                    -sign * _acceleration(plant, model, joint, limit + sign * place, sign) > _STOPPED
                     for place in (-beside, beside)
                 )
                 if before or not beyond:
@@ -109,12 +110,12 @@ def _wrong_stops(kind: str, plant: "Bullet | Mujoco", model: RobotModel) -> Iter
                     yield f"joint '{name}' {said} its limit of {limit:g} {model.joint_units[joint]} in {ENGINES[kind]}"
 
 
-def _acceleration(plant: "Bullet | Mujoco", model: RobotModel, joint: int, position: float) -> float:
-    """Return the acceleration of a joint at a position, held against gravity, in rad/s^2 or m/s^2."""
-    q, rest = model.usual_range.mean(axis=0), np.zeros(model.nq)
-    q[joint] = position
-    _missing_torque(plant, model, q, rest, rest)
-    return float(plant.dq[joint]) / _STEP
+def _acceleration(plant: "Bullet | Mujoco", model: RobotModel, joint: int, position: float, outwards: float) -> float:
+    """Return the acceleration of a joint that moves outwards without a net torque, in rad/s^2 or m/s^2."""
+    q, dq, rest = model.usual_range.mean(axis=0), np.zeros(model.nq), np.zeros(model.nq)
+    q[joint], dq[joint] = position, outwards * _OUTWARDS
+    _missing_torque(plant, model, q, dq, rest)
+    return float(plant.dq[joint] - dq[joint]) / _STEP
 
 
 def _first_difference(engine: str, plant: "Bullet | Mujoco", model: RobotModel) -> str:

@@ -160,7 +160,7 @@ def _complete_bounds(joint: ET.Element) -> Iterator[tuple[str, str]]:
 
 
 def _short(values: Iterable[float]) -> str:
-    return " ".join(f"{value:.4g}" for value in values)
+    return " ".join(f"{round(value, 12) + 0.0:.4g}" for value in values)  # 0 for -0.0
 
 
 def write_text(robot: ET.Element) -> str:
@@ -178,13 +178,10 @@ def _write(element: ET.Element) -> ET.Element:
     tag = element.tag
     keys = (*_NAMES.get(tag, ()), *_NUMBERS.get(tag, ()))
     written = ET.Element(tag, {key: value for key in keys if (value := element.get(key)) is not None})
-    fixed = tag == "joint" and not moves(element)
-    seen: set[str] = set()
-    for part in element:
-        wanted = part.tag in (_OF_FIXED if fixed else _PARTS.get(tag, ()))
-        if wanted and (part.tag in _SEVERAL or part.tag not in seen) and not _is_no_shape(part):
-            seen.add(part.tag)
-            written.append(_write(part))
+    kinds = _OF_FIXED if tag == "joint" and not moves(element) else _PARTS.get(tag, ())
+    for kind in kinds:
+        parts = element.findall(kind)
+        written.extend(_write(part) for part in (parts if kind in _SEVERAL else parts[:1]) if not _is_no_shape(part))
     return written
 
 

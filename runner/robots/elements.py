@@ -11,6 +11,7 @@ from runner.schema.model import LARGEST, SMALLEST
 NO_LIMIT = 1e6
 """Smallest absolute value, in SI units, that means no limit, because URDF requires limits of joints."""
 _NUMBER = re.compile(r"[+-]?(\d+\.?\d*|\.\d+)(e[+-]?\d+)?|[+-]?inf(inity)?|nan", re.IGNORECASE | re.ASCII)
+_NONE = f"{NO_LIMIT:.0f}"
 TENSOR = ("ixx", "ixy", "ixz", "iyy", "iyz", "izz")
 
 
@@ -92,12 +93,14 @@ def wrong_limits(joint: ET.Element) -> Iterator[str]:
     if joint.get("type") not in ("revolute", "prismatic"):
         return
     limit = joint.find("limit")
-    limit = ET.Element("limit") if limit is None else limit
+    if limit is None:
+        yield f"no <limit>; give it lower, upper, effort and velocity, {_NONE} for none"
+        return
     if limit.get("lower") is None and limit.get("upper") is None:
-        yield f"no position limits; give lower and upper, -{NO_LIMIT:g} and {NO_LIMIT:g} for none"
+        yield f"no position limits; give lower and upper, -{_NONE} and {_NONE} for none"
     for key in ("effort", "velocity"):
         if limit.get(key) is None:
-            yield f"no {key} limit; give it, {NO_LIMIT:g} for none"
+            yield f"no {key} limit; give it, {_NONE} for none"
     for key in ("lower", "upper", "effort", "velocity"):
         if limit.get(key) is not None and math.isnan(number(limit, key)):
             yield f"a limit {key}={quoted(limit.get(key))}; allowed: a number"
