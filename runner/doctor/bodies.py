@@ -6,14 +6,18 @@ import xml.etree.ElementTree as ET
 from collections.abc import Collection, Iterator, Sequence
 from pathlib import Path
 
+import numpy as np
+
 from runner.base.sanitize import few, quoted
 from runner.doctor.finding import Finding
-from runner.robots.elements import NO_LIMIT, TENSOR, absurd_inertial, moves, number, wrong_places
-from runner.robots.inertials import fix_inertia, impossible_inertia, make_massless, principal_moments
+from runner.robots.elements import NO_LIMIT, TENSOR, absurd_inertial, end_of, moves, number, wrong_places
+from runner.robots.inertials import fix_inertia, impossible_inertia, make_massless, place_of, principal_moments
 from runner.robots.joint_dynamics import hold, rest_position
 from runner.robots.tree import UrdfTree
 
 _NONE = repr(NO_LIMIT)
+_DENSEST = 2e4  # kg/m^3, of metals
+_SMALLEST_PART = 0.3  # of the lengths of all links: the least size of a link for its density
 
 
 def check_joints(tree: UrdfTree, tip: str) -> list[Finding]:
@@ -128,6 +132,28 @@ def _complete(place: str, link: ET.Element) -> list[Finding]:
     if number(link.find("inertial/mass"), "value") == 0.0 and len(missing) == len(TENSOR):
         return []
     return [Finding("fixed", place, f"no inertia {', '.join(missing)}", "now 0")]
+
+
+def check_units(tree: UrdfTree) -> list[Finding]:
+    """Return links whose inertia or mass seems to be in other units than kg m^2 and kg."""
+    places = {name: float(np.linalg.norm(place_of(joint).translation)) for name, joint in tree.joints.items()}
+    whole = sum(places.values())
+    findings = []
+    for name, link in tree.links.items():
+        mass = number(link.find("inertial/mass"), "value")
+        if name == tree.root or not 0.0 < mass < math.inf or not 0.0 < whole < math.inf:
+            continue
+        ends = [places[joint] for joint, each in tree.joints.items() if end_of(each, "parent") == name]
+        centre = float(np.linalg.norm(place_of(link.find("inertial")).translation))
+        size = max([centre, *ends])
+        gyration = math.sqrt(max(float(principal_moments(link)[2]), 0.0) / mass)
+        if gyration > whole:
+            text = f"a radius of gyration of {gyration:.2g} m on a link of {size:.2g} m"
+            findings.append(Finding("note", f"link '{name}'", text, "kg mm^2? Divide the inertia by 1e6"))
+        if mass > _DENSEST * max(size, _SMALLEST_PART * whole) ** 3:
+            text = f"a mass of {mass:g} kg on a link of {size:.2g} m, denser than metals"
+            findings.append(Finding("note", f"link '{name}'", text, "g? Divide the mass by 1000"))
+    return findings
 
 
 def check_placements(tree: UrdfTree) -> list[Finding]:
