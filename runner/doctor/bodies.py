@@ -10,7 +10,7 @@ import numpy as np
 
 from runner.base.sanitize import few, quoted
 from runner.doctor.finding import Finding
-from runner.robots.elements import NO_LIMIT, TENSOR, absurd_inertial, end_of, moves, number, wrong_places
+from runner.robots.elements import NO_LIMIT, TENSOR, absurd_inertial, moves, number, wrong_places
 from runner.robots.inertials import fix_inertia, impossible_inertia, make_massless, place_of, principal_moments
 from runner.robots.joint_dynamics import hold, rest_position
 from runner.robots.tree import UrdfTree
@@ -143,7 +143,7 @@ def check_units(tree: UrdfTree) -> list[Finding]:
         mass = number(link.find("inertial/mass"), "value")
         if name == tree.root or not 0.0 < mass < math.inf or not 0.0 < whole < math.inf:
             continue
-        ends = [places[joint] for joint, each in tree.joints.items() if end_of(each, "parent") == name]
+        ends = [places[joint] for joint in tree.borne.get(name, ())]
         centre = float(np.linalg.norm(place_of(link.find("inertial")).translation))
         size = max([centre, *ends])
         gyration = math.sqrt(max(float(principal_moments(link)[2]), 0.0) / mass)

@@ -4,6 +4,7 @@ import xml.etree.ElementTree as ET
 from collections import Counter
 from collections.abc import Collection, Mapping, Sequence
 from dataclasses import dataclass, field, replace
+from functools import cached_property
 from pathlib import Path
 
 from runner.base.errors import ConfigError, nearest
@@ -41,16 +42,23 @@ class UrdfTree:
     renamed: tuple[str, ...] = ()
     changes: tuple[Change, ...] = ()
 
-    @property
+    @cached_property
     def bearers(self) -> dict[str, str]:
         """Name of the parent joint of each link except the root."""
         return {end_of(joint, "child"): name for name, joint in self.joints.items()}
 
+    @cached_property
+    def borne(self) -> dict[str, list[str]]:
+        """Names of the joints on each link that bears some, in the order of the file."""
+        found: dict[str, list[str]] = {}
+        for name, joint in self.joints.items():
+            found.setdefault(end_of(joint, "parent"), []).append(name)
+        return found
+
     @property
     def ends(self) -> list[str]:
         """Links without child joints, in the order of the file."""
-        bearing = {end_of(joint, "parent") for joint in self.joints.values()}
-        return [name for name in self.links if name not in bearing]
+        return [name for name in self.links if name not in self.borne]
 
     def way(self, link: str) -> list[str]:
         """Return the joints from the root to a link, in order."""
