@@ -40,8 +40,8 @@ def check_engine(outline: RobotOutline, plant: PlantConfig) -> None:
             difference = _difference(plant.kind, arm.path, _stamps(arm.path), arm.config.inertials, arm.config.tip)
             if difference:
                 engine = ENGINES[plant.kind]
-                told = f"robot: {engine} and Pinocchio simulate {arm.path} differently: {difference}"
-                problems.append(f"{told}. Take plant=rk4, or look at it by `runner doctor {arm.path.name}`")
+                message = f"robot: {engine} and Pinocchio simulate {arm.path} differently: {difference}"
+                problems.append(f"{message}. Take plant=rk4, or look at it by `runner doctor {arm.path.name}`")
     if problems:
         raise ConfigError(problems)
 

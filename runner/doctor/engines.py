@@ -12,7 +12,7 @@ _SAMPLES = 20
 
 
 def compare_engines(urdf: str, model: RobotModel, generator: np.random.Generator) -> list[Finding]:
-    """Return how far PyBullet's and MuJoCo's motion is from Pinocchio's; see compare.
+    """Compare the motion of PyBullet and MuJoCo with that of Pinocchio; see compare.
 
     If PyBullet is not installed, a note says so.
     """

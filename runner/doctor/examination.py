@@ -221,9 +221,9 @@ def _take(tree: UrdfTree, source: str, urdf: str, tip: str, findings: list[Findi
 
 
 def _left_out(tree: UrdfTree, mjcf: Mjcf | None) -> list[Finding]:
-    """Return what a file says of the motion and runs do not have, and the parts of an MJCF without a use.
+    """Return the properties of a file that runs leave out, and the unused parts of an MJCF.
 
-    Runs of an MJCF go on to say it. A URDF loses it: its copy has no such elements.
+    The copy of a URDF has no such elements. Runs of an MJCF report them again.
     """
     if mjcf is not None:
         moves = [Finding("note", "left out of the motion", text) for text in mjcf.left_out.motion]

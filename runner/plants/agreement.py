@@ -17,7 +17,7 @@ ENGINES = {"bullet": "PyBullet", "mujoco": "MuJoCo"}
 _STEP = 1e-4  # s
 _AGREE = 1e-6  # of the largest torque: beyond it the engines simulate different arms
 _LEAST = 1e-12  # kg and kg m^2, of MuJoCo's moving links, as in conf/plant/mujoco.yaml
-_BESIDE = 1e-2  # rad or m from a stop, on both sides; at most a hundredth of the range
+_DISTANCE = 1e-2  # rad or m from a stop, on both sides; at most a hundredth of the range
 _OUTWARDS = 0.1  # rad/s or m/s, there
 _STOPPED = 1.0  # rad/s^2 or m/s^2: least acceleration of a stop, which without it is zero
 _SAME = 1e-6  # of axes, origins in m, and moments of inertia
@@ -36,7 +36,7 @@ class Agreement(NamedTuple):
 
 
 def compare(kind: str, urdf: str, model: RobotModel, samples: int, generator: np.random.Generator) -> Agreement:
-    """Return how far an engine's motion is from Pinocchio's.
+    """Compare the motion of an engine with that of Pinocchio.
 
     The acceleration of one step under random torques is compared, because an engine may have a right mass matrix and a
     wrong step. Each finite position limit must stop its joint there and not before; random states do not show that.
@@ -98,12 +98,12 @@ def _wrong_stops(kind: str, plant: "Bullet | Mujoco", model: RobotModel) -> Iter
     """Yield a message about each position limit at which an engine does not stop the joint, or before which it does."""
     limits = model.position_limits
     for joint, name in enumerate(model.joint_names):
-        beside = min(_BESIDE, 0.01 * float(limits[1, joint] - limits[0, joint]))
+        distance = min(_DISTANCE, 0.01 * float(limits[1, joint] - limits[0, joint]))
         for sign, limit in ((-1.0, limits[0, joint]), (1.0, limits[1, joint])):
-            if np.isfinite(limit) and beside > 0.0:
+            if np.isfinite(limit) and distance > 0.0:
                 before, beyond = (
                     -sign * _acceleration(plant, model, joint, limit + sign * place, sign) > _STOPPED
-                    for place in (-beside, beside)
+                    for place in (-distance, distance)
                 )
                 if before or not beyond:
                     said = "stops before" if before else "does not stop at"

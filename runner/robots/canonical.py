@@ -47,7 +47,7 @@ _NAMES: Mapping[str, Sequence[str]] = {
 }
 _SEVERAL = {"link", "joint", "left_out", "visual", "collision"}  # of other elements, readers take the first
 _OF_FIXED = ("parent", "child", "origin")
-_UNIT = 1e-15  # of a unit vector's length: it stays as it is
+_UNIT = 1e-15  # of a unit vector's length: it does not change
 _TOLD = 1e-9  # of an axis' length: smaller differences are rounding of the file
 
 
@@ -150,7 +150,7 @@ def _complete_axis(joint: ET.Element) -> Iterator[tuple[str, str]]:
 
 
 def _complete_bounds(joint: ET.Element) -> Iterator[tuple[str, str]]:
-    """Write the position limit that is missing beside the other; the format's default is 0."""
+    """Write a missing position limit if the other exists; the format's default is 0."""
     limit = joint.find("limit")
     missing = [key for key in ("lower", "upper") if limit is not None and limit.get(key) is None]
     if limit is None or len(missing) != 1 or joint.get("type") not in ("revolute", "prismatic"):

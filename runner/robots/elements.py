@@ -73,7 +73,7 @@ def wrong_places(element: ET.Element) -> Iterator[tuple[str, str]]:
         if part.tag == "origin" and part.get("quat_xyzw") is not None:  # otherwise it is rpy by now
             yield (
                 f"<origin quat_xyzw={quoted(part.get('quat_xyzw'))}>",
-                "allowed: four numbers, not all zero, and no rpy beside them",
+                "allowed: four numbers, not all zero, and no rpy with them",
             )
 
 

@@ -66,15 +66,15 @@ def read_motors(robot: ET.Element, joints: Mapping[str, ET.Element]) -> None:
         elif abs(gear) != 1.0:
             reductions.setdefault(gear, []).append(name)
     for gear, names in reductions.items():
-        text = f"reduction {gear:g} of {few(names)}, because no rotor's inertia is beside it (robot.armature)"
+        text = f"reduction {gear:g} of {few(names)}, without the inertia of a rotor (robot.armature)"
         ET.SubElement(robot, "left_out", text=text, gravity="")
-    sprung = [
+    with_spring = [
         each.get("reference", "")
         for each in robot.findall("gazebo")
         if each.get("reference") in joints and _sum_of(each, "springStiffness", 0.0)
     ]
-    if sprung:
-        text = f"springs of the joints {few(sprung)} (springStiffness); no key"
+    if with_spring:
+        text = f"springs of the joints {few(with_spring)} (springStiffness); no key"
         ET.SubElement(robot, "left_out", text=text, gravity="")
 
 

@@ -187,7 +187,7 @@ def parse_xml(path: Path, key: str = "robot.urdf") -> ET.Element:
     except ExcessError as error:
         raise ConfigError(f"{key}: {path} {error}") from error
     except (ET.ParseError, ValueError) as error:
-        raise ConfigError(f"{key}: {path} is no XML: {error}") from error
+        raise ConfigError(f"{key}: {path} is not XML: {error}") from error
     except OSError as error:
         raise ConfigError(f"{key}: {path} cannot be read: {error.strerror or error}") from error
 

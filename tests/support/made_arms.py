@@ -8,7 +8,7 @@ import pinocchio as pin
 
 @dataclass(frozen=True)
 class MadeJoint:
-    """A joint with the link behind it; the joint's axis and the inertia are in the frame of that link."""
+    """A joint and its child link; axis and inertia are in the frame of that link."""
 
     prismatic: bool
     place: pin.SE3
@@ -104,7 +104,7 @@ class Writer:
         return f"<origin {' '.join(attributes)}/>" if attributes else ""
 
     def _split(self, inertia):
-        """Half of the body may be a link of its own, behind a fixed joint."""
+        """Half of the body may be another link, behind a fixed joint."""
         if not self._differs():
             return inertia, None
         half = pin.Inertia(0.5 * inertia.mass, inertia.lever, 0.5 * inertia.inertia)

@@ -1,4 +1,4 @@
-"""What each engine does with a file as it is: the rows of the table in docs/robots.md. The runner passes none on."""
+"""What each engine does with an unchanged file: the rows of the table in docs/robots.md."""
 
 import tempfile
 
@@ -112,7 +112,7 @@ ACCELERATIONS = {
         raw(head=' version="1.2"', first=joint("j1", "base", "l1", **RATES)), PLAIN, PLAIN, PLAIN
     ),
 }  # fmt: skip
-"""A file as it is, and the usual arm that Pinocchio, PyBullet and MuJoCo move instead; a number is a factor."""
+"""An unchanged file, and the usual arm that Pinocchio, PyBullet and MuJoCo move instead; a number is a factor."""
 ENGINES = [in_pinocchio, pytest.param(in_bullet, marks=pytest.mark.bullet), in_mujoco]
 NAMES = ("in_pinocchio", "in_bullet", "in_mujoco")
 
@@ -134,8 +134,8 @@ def test_an_engine_moves_the_arm_of_the_row(engine, row):
 
 NONE = (-np.inf, np.inf)
 LIMITS = {
-    "upper limit alone": (LIMIT.replace('lower="-2" ', ""), ((0.0, 2.0), (0.0, 2.0), NONE)),
-    "lower limit alone": (LIMIT.replace('upper="2" ', ""), ((-2.0, 0.0), (-2.0, -1.0), NONE)),
+    "only an upper limit": (LIMIT.replace('lower="-2" ', ""), ((0.0, 2.0), (0.0, 2.0), NONE)),
+    "only a lower limit": (LIMIT.replace('upper="2" ', ""), ((-2.0, 0.0), (-2.0, -1.0), NONE)),
     "no position limits": ('<limit effort="1" velocity="1"/>', ((0.0, 0.0), (0.0, -1.0), NONE)),
 }
 

@@ -28,8 +28,8 @@ SAME = {
     "axis along a diagonal": (second(axis='<axis xyz="1 1 0"/>'), second(axis=f'<axis xyz="{HALF!r} {HALF!r} 0"/>')),
     "no axis": (second(axis=""), second(axis='<axis xyz="1 0 0"/>')),
     "axis without direction": (second(axis="<axis/>"), second(axis='<axis xyz="1 0 0"/>')),
-    "upper limit alone": (first(limit=LIMIT.replace('lower="-2" ', "")), first(limit=LIMIT.replace("-2", "0"))),
-    "lower limit alone": (first(limit=LIMIT.replace('upper="2" ', "")), first(limit=LIMIT.replace('"2"', '"0"'))),
+    "only an upper limit": (first(limit=LIMIT.replace('lower="-2" ', "")), first(limit=LIMIT.replace("-2", "0"))),
+    "only a lower limit": (first(limit=LIMIT.replace('upper="2" ', "")), first(limit=LIMIT.replace('"2"', '"0"'))),
     "blanks": (arm(links=link("base") + link("l1", " 1.0 ", BLANKS, "0.01  0.02 0.1 ") + link("l2") + link("l3")),
                arm()),
     "blanks in limits": (first(limit=LIMIT.replace('"-2"', '"-2 "').replace('"50"', '" 50"')), arm()),
@@ -79,7 +79,7 @@ def test_an_orientation_by_quaternion_is_roll_pitch_and_yaw(file):
     ("text", "said"),
     [
         (second(origin='<origin rpy="0 0 1" quat_xyzw="0 0 0 1"/>'), "joint 'j2' in .* has <origin quat_xyzw="
-         "'0 0 0 1'>; allowed: four numbers, not all zero, and no rpy beside them"),
+         "'0 0 0 1'>; allowed: four numbers, not all zero, and no rpy with them"),
         (second(origin='<origin quat_xyzw="0 0 0 0"/>'), "joint 'j2' in .* <origin quat_xyzw='0 0 0 0'>; all"),
         (second(axis='<axis xyz="1_0 0 0"/>'), "joint 'j2' in .* has <axis xyz='1_0 0 0'>; allowed: three numbers"),
         (first(limit=""), "no <limit>; give it lower, upper, effort and velocity, 1000000 for none"),
@@ -122,7 +122,7 @@ def test_reductions_and_springs_are_named(file):
     spring = '<gazebo reference="j3"><springStiffness>5</springStiffness></gazebo>'
     given = dynamics_of(read_tree(file(arm(tail=tail + spring))), "arm.urdf", 9.81)
     assert given.left_out == (
-        "reduction 100 of j1, j2, because no rotor's inertia is beside it (robot.armature)",
+        "reduction 100 of j1, j2, without the inertia of a rotor (robot.armature)",
         "springs of the joints j3 (springStiffness); no key",
     )
 
