@@ -11,13 +11,12 @@ import numpy as np
 from runner.base.engines import installed_versions
 from runner.base.errors import ConfigError
 from runner.base.paths import robots_dir
-from runner.config.arms import RobotOutline
+from runner.config.arms import ArmOutline, RobotOutline
 from runner.plants import PlantConfig
 from runner.plants.agreement import ENGINES, compare
 from runner.robots.description import mjcf_of, read_urdf
 from runner.robots.inertials import set_file
 from runner.robots.model import RobotModel
-from runner.robots.tree import is_mjcf
 from runner.symbolic.cache import read_answer, write_answer
 
 _SAMPLES = 3
@@ -37,7 +36,7 @@ def check_engine(outline: RobotOutline, plant: PlantConfig) -> None:
     problems = []
     for arm in outline.stages:
         if not arm.path.is_relative_to(robots_dir()):
-            difference = _difference(plant.kind, arm.path, _stamps(arm.path), arm.config.inertials, arm.config.tip)
+            difference = _difference(plant.kind, arm.path, _stamps(arm), arm.config.inertials, arm.config.tip)
             if difference:
                 engine = ENGINES[plant.kind]
                 message = f"robot: {engine} and Pinocchio simulate {arm.path} differently: {difference}"
@@ -46,9 +45,9 @@ def check_engine(outline: RobotOutline, plant: PlantConfig) -> None:
         raise ConfigError(problems)
 
 
-def _stamps(path: Path) -> tuple[tuple[Path, int, int], ...]:
+def _stamps(arm: ArmOutline) -> tuple[tuple[Path, int, int], ...]:
     """Return the files of an arm with modification time and size."""
-    files: Sequence[Path] = (*(mjcf_of(path).files if is_mjcf(path) else [path]), set_file(path))
+    files: Sequence[Path] = (*(mjcf_of(arm.path).files if arm.config.mjcf else [arm.path]), set_file(arm.path))
     return tuple((file, file.stat().st_mtime_ns, file.stat().st_size) for file in files if file.exists())
 
 

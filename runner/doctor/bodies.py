@@ -141,7 +141,10 @@ def check_units(tree: UrdfTree) -> list[Finding]:
     findings = []
     for name, link in tree.links.items():
         mass = number(link.find("inertial/mass"), "value")
-        if name == tree.root or not 0.0 < mass < math.inf or not 0.0 < whole < math.inf:
+        inertia = link.find("inertial/inertia")
+        given = [number(inertia, key) for key in TENSOR if inertia is not None and inertia.get(key) is not None]
+        readable = 0.0 < mass < math.inf and 0.0 < whole < math.inf and all(map(math.isfinite, given))
+        if name == tree.root or not readable:
             continue
         ends = [places[joint] for joint in tree.borne.get(name, ())]
         centre = float(np.linalg.norm(place_of(link.find("inertial")).translation))

@@ -65,7 +65,7 @@ def _make(kind: str, urdf: str, model: RobotModel) -> "Bullet | Mujoco":
     if kind == "bullet":
         from runner.plants.bullet import Bullet
 
-        return Bullet(urdf, model, _STEP, 1)
+        return Bullet(f"{urdf}\n", model, _STEP, 1)  # another text than that of a run, which would reuse the server
     from runner.plants.mujoco import Mujoco
 
     return Mujoco(urdf, model, _STEP, 1, "euler", _LEAST)

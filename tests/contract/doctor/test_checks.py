@@ -334,3 +334,9 @@ def test_several_arms_and_other_faults_are_told_at_once(examined):
                          "</joint></robot>")  # fmt: skip
     with pytest.raises(RunnerError, match=r"branches, (.|\n)*refused link 'l1': mass -2 kg"):
         examined(both.replace('mass value="2.0"', 'mass value="-2.0"', 1))
+
+
+@pytest.mark.parametrize("value", ["round", "nan", "inf"])
+def test_a_moment_that_is_not_a_finite_number_is_refused(found, value):
+    text = re.sub(r'ixx="[^"]*"', f'ixx="{value}"', CLEAN, count=1)
+    assert found(text, "link 'l0'").text == "an inertia that is not a finite number"
