@@ -89,7 +89,9 @@ def canonize(links: Mapping[str, ET.Element], joints: Mapping[str, ET.Element]) 
             said = (*_complete_axis(joint), *_complete_bounds(joint))
             changes += (Change(f"joint '{name}'", *each) for each in said)
         for dynamics in joint.findall("dynamics"):
-            dynamics.attrib = {"damping": "0.0", "friction": "0.0"} | dynamics.attrib
+            for key in ("damping", "friction"):  # readers require one of them, and runs read neither from the text
+                if not math.isfinite(number(dynamics, key)):
+                    dynamics.set(key, "0.0")
     return tuple(changes)
 
 

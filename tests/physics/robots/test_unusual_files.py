@@ -34,6 +34,10 @@ SAME = {
                arm()),
     "blanks in limits": (first(limit=LIMIT.replace('"-2"', '"-2 "').replace('"50"', '" 50"')), arm()),
     "no limit as inf": (first(limit=LIMIT.replace('"50"', '"inf"')), first(limit=LIMIT.replace('"50"', '"1e6"'))),
+    "damping in words": (
+        arm(third=joint("j3", "l2", "l3", more='<dynamics damping="high"/>')),
+        arm(third=joint("j3", "l2", "l3", more='<dynamics damping="0" friction="0"/>')),
+    ),
     "version 1": (arm(head=' version="1"'), arm()),
     "version 1.3": (arm(head=' version="1.3"'), arm()),
     "xacro definition": (arm(head=XACRO, tail='<xacro:property name="w" value=".2"/>'), arm()),
