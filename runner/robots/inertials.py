@@ -16,7 +16,8 @@ from runner.base.errors import ConfigError, nearest
 from runner.base.lazy_modules import pin
 from runner.base.limits import ExcessError, read_text
 from runner.base.sanitize import quoted
-from runner.robots.tree import TENSOR, UrdfTree, vector_text
+from runner.robots.elements import TENSOR, vector_text
+from runner.robots.tree import UrdfTree
 from runner.schema.model import StrictModel
 from runner.schema.values import expand
 
@@ -160,10 +161,12 @@ def impossible_inertia(link: ET.Element) -> list[str]:
     listed = ", ".join(f"{moment:.3g}" for moment in moments)
     if moments[0] < -_ROUNDING * moments[2]:
         return [f"an inertia that is not positive definite (principal moments {listed} kg m^2): no body has it"]
-    if moments[2] > (1.0 + _ROUNDING) * (moments[0] + moments[1]):
+    others = moments[0] + moments[1]
+    if moments[2] > (1.0 + _ROUNDING) * others:
+        above = f"{100.0 * (moments[2] / others - 1.0):.3g} % above" if others > 0.0 else "above"
         return [
-            f"principal moments of inertia of {listed} kg m^2: no body has one above the sum of the others, and "
-            "PyBullet would take zero for all"
+            f"principal moments of inertia of {listed} kg m^2: no body has one above the sum of the others, which the "
+            f"largest is {above}, and PyBullet would take zero for all"
         ]
     return []
 
