@@ -114,7 +114,7 @@ def _turn_quaternion(origin: ET.Element) -> Iterator[tuple[str, str]]:
     quaternion = np.array(numbers(origin.get("quat_xyzw", "")))
     if quaternion.shape != (4,) or origin.get("rpy") is not None:
         return
-    length = np.linalg.norm(quaternion)
+    length = math.hypot(*quaternion)
     if not 0.0 < length < math.inf:
         return
     rotation = pin.Quaternion(quaternion / length).toRotationMatrix()

@@ -13,7 +13,7 @@ from pydantic import Field, NonNegativeFloat, TypeAdapter, ValidationError
 
 from runner.base.bounded_yaml import STORED, YamlError, read_yaml
 from runner.base.errors import ConfigError, nearest
-from runner.base.lazy_modules import pin
+from runner.base.lazy_modules import eigen, pin
 from runner.base.limits import ExcessError, read_text
 from runner.base.sanitize import quoted
 from runner.robots.elements import TENSOR, vector_text
@@ -174,6 +174,22 @@ def impossible_inertia(link: ET.Element) -> list[str]:
 def principal_moments(link: ET.Element) -> np.ndarray:
     """Return a link's principal moments of inertia about its centre of mass, shape (3,), in kg m^2, ascending."""
     return np.asarray(np.linalg.eigvalsh(_tensor(link)))
+
+
+def turn_to_principal_axes(link: ET.Element) -> None:
+    """Turn the inertial frame of a link to its principal axes: the tensor becomes diagonal, the body stays the same."""
+    inertial, inertia, tensor = link.find("inertial"), link.find("inertial/inertia"), _tensor(link)
+    if inertial is None or inertia is None or not np.any(tensor - np.diag(np.diag(tensor))):
+        return
+    principal, place = eigen.SelfAdjointEigenSolver(tensor), place_of(inertial)
+    axes = principal.eigenvectors().copy()
+    axes[:, 2] = np.cross(axes[:, 0], axes[:, 1])  # right-handed
+    for origin in inertial.findall("origin"):
+        inertial.remove(origin)
+    rpy = vector_text(pin.rpy.matrixToRpy(place.rotation @ axes))
+    inertial.insert(0, ET.Element("origin", xyz=vector_text(place.translation), rpy=rpy))
+    inertia.attrib.update(dict.fromkeys(TENSOR, "0.0"))
+    inertia.attrib.update(zip(("ixx", "iyy", "izz"), map(repr, principal.eigenvalues().tolist()), strict=True))
 
 
 def fix_inertia(link: ET.Element) -> None:
