@@ -57,8 +57,8 @@ def read_clock(t: FloatArray, place: Callable[[int], str]) -> Clock:
         worst = int(np.argmin(steps))
         if steps[worst] < -_BACK or len(back) > _SWAPPED * len(t):
             raise RunnerError(
-                f"{place(worst + 1)}: the time is {t[worst + 1]:g} s after {t[worst]:g} s, and runs back in {len(back)} "
-                "rows; cut the file to one log"
+                f"{place(worst + 1)}: the time is {t[worst + 1]:g} s after {t[worst]:g} s, and runs back in "
+                f"{len(back)} rows; cut the file to one log"
             )
         rows = np.argsort(t, kind="stable")
         t = t[rows]

@@ -219,6 +219,14 @@ def read_map(path: Path, joints: Sequence[str], units: Sequence[str]) -> tuple[C
         RunnerError: if it cannot be read, names a joint that the robot does not have, or a unit that does not fit.
     """
     found = read_data(path, ColumnsMap)
+    try:
+        return found, factors_of(found, joints, units)
+    except RunnerError as error:
+        raise RunnerError(f"{path}: {error}") from None
+
+
+def factors_of(found: ColumnsMap, joints: Sequence[str], units: Sequence[str]) -> dict[str, Factor]:
+    """Return the factor of each column of a map to SI; see read_map."""
     problems = [*_unknown_joints(found, joints), *absurd("", found.model_dump())]
     factors: dict[str, Factor] = {}
     prismatic = {joint: unit == "m" for joint, unit in zip(joints, units, strict=True)}
@@ -244,8 +252,8 @@ def read_map(path: Path, joints: Sequence[str], units: Sequence[str]) -> tuple[C
         if name in factors:
             factors[name] = Factor(column.sign * factors[name].factor, own)
     if problems:
-        raise RunnerError(f"{path}: {'; '.join(problems)}")
-    return found, factors
+        raise RunnerError("; ".join(problems))
+    return factors
 
 
 def _unknown_joints(found: ColumnsMap, joints: Sequence[str]) -> Iterator[str]:

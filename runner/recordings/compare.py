@@ -1,7 +1,7 @@
 """Comparison of a recording with a run: time alignment, signals, metrics and friction."""
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 
 import numpy as np
@@ -10,6 +10,7 @@ import pinocchio as pin
 from runner.base.arrays import FloatArray
 from runner.base.errors import RunnerError
 from runner.recordings.columns_map import Signal, other_units, read_map
+from runner.recordings.consistency import check_consistency
 from runner.recordings.friction import Friction, identify_friction
 from runner.recordings.offset import Offset, find_offset
 from runner.recordings.recording import FEWEST_ROWS, Recording, read_recording
@@ -123,6 +124,10 @@ def compare_recording(run: Run, path: Path, columns: Path, fill_gaps: float = 0.
     trace = setting.trace
     said, factors = read_map(columns, trace.joint_names, trace.joint_units)
     recording = read_recording(path, said, factors, fill_gaps)
+    verdict = check_consistency(setting.config.arm.model, recording)
+    if verdict.questions:
+        raise RunnerError(f"{columns}: {' '.join(verdict.questions)}")
+    recording = replace(recording, notes=(*recording.notes, *verdict.notes))
     moving = [signal for signal in recording.signals if signal.kind in ("position", "tip")]
     if not moving:
         raise RunnerError(f"{columns}: columns: needs the position of a joint, or a coordinate of the tip")
