@@ -134,7 +134,19 @@ _STEMS: Mapping[str, Kind] = {
     **dict.fromkeys(("q", "pos", "position", "joint", "angle", "joint_pos", "joint_position", "joint_angle", "theta", "j",
                      "q_meas", "actual_q", "measured_q", "state", "actual", "axis", "q_actual"), "position"),
 }  # fmt: skip
-_TIMES = ("time", "t", "timestamp", "stamp", "__time", "%time", "time_stamp", "elapsed", "header_stamp", "sec", "seconds")
+_TIMES = (
+    "time",
+    "t",
+    "timestamp",
+    "stamp",
+    "__time",
+    "%time",
+    "time_stamp",
+    "elapsed",
+    "header_stamp",
+    "sec",
+    "seconds",
+)
 _TIPS = re.compile(r"(tip|tcp|ee|eef|tool|end_effector|laser|ee_pos|tcp_pose|position)?_?(?P<label>[xyz])")
 
 
