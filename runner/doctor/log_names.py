@@ -68,7 +68,7 @@ WRITERS: Sequence[_Writer] = (
             (rf"(Rt)?TargetJointPos{_J}", "reference", "deg", "", ""),
             (rf"(Rt)?(Act|Actual)?JointPos{_J}", "position", "deg", "", ""),
             (rf"(Rt)?(Act|Actual)?JointVel{_J}", "velocity", "deg/s", "", ""),
-            (rf"(Rt)?(Act|Actual)?JointTorq{_J}", "torque", "%", "", ""),
+            (rf"(Rt)?(Act|Actual|Target)?JointTorq{_J}", "torque", "%", "", ""),
         ),
     ),
     _Writer(
