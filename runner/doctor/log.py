@@ -116,7 +116,7 @@ def examine_log(
             findings.append(Finding("ask", "time", "no column of the time is known", "say rate: in Hz"))
         return found
     said = ColumnsMap.model_validate(map_of(found, topic, episode))
-    return _judge(found, model, said)
+    return judge(found, model, said)
 
 
 def _examine_given(path: Path, model: RobotModel | None, given: Path) -> LogExamination:
@@ -129,11 +129,20 @@ def _examine_given(path: Path, model: RobotModel | None, given: Path) -> LogExam
     meanings = [Meaning(name, keys[name], f"said in {given.name}") for name in said.columns]
     time = None if said.time is None else Meaning(said.time.column, {"unit": said.time.unit}, f"said in {given.name}")
     notes = [Finding("note", "rows", note) for note in table.notes]
-    return _judge(LogExamination(table, writer_of(list(table.columns)), time, meanings, notes, None, None), model, said)
+    return judge(LogExamination(table, writer_of(list(table.columns)), time, meanings, notes, None, None), model, said)
 
 
-def _judge(found: LogExamination, model: RobotModel, said: ColumnsMap) -> LogExamination:
-    """Add what the signals say of each other, and the motion."""
+def judge(found: LogExamination, model: RobotModel, said: ColumnsMap) -> LogExamination:
+    """Return an examination with what the signals say of each other, and the motion.
+
+    Args:
+        found: The columns of a log.
+        model: The arm.
+        said: Their meaning.
+
+    Raises:
+        RunnerError: if the signals cannot be read, or last less than 2 s.
+    """
     recording = to_recording(found.table, said, factors_of(said, model.joint_names, model.joint_units), 0.1)
     if recording.duration < _SHORTEST:
         raise RunnerError(
@@ -165,7 +174,7 @@ def _judge(found: LogExamination, model: RobotModel, said: ColumnsMap) -> LogExa
         findings.append(
             Finding("note", "torques", meanings[-1].reason if "torque" in meanings[-1].keys else "without gravity")
         )
-        return _judge(replace(found, findings=[*found.findings, *findings]), model, said)
+        return judge(replace(found, findings=[*found.findings, *findings]), model, said)
     findings += [Finding("ask", *_split(question)) for question in verdict.questions]
     findings += [Finding("note", "tip", note) for note in verdict.notes]
     findings += _still(model, recording)
@@ -295,9 +304,8 @@ def _joints_of(path: Path, labels: Sequence[str], joints: Sequence[str]) -> dict
     by_name: dict[str, str] = {}
     for label in labels:
         plain = _plain(label)
-        fits = [joint for joint in joints if _plain(joint) == plain] or [
-            joint for joint in joints if plain.endswith(_plain(joint)) or _plain(joint).startswith(plain + "joint")
-        ]
+        fits = [joint for joint in joints if _plain(joint) == plain]
+        fits = fits or [joint for joint in joints if plain.endswith(_plain(joint))]
         if len(fits) == 1:
             by_name[label] = fits[0]
     twice = [label for label in by_name if list(by_name.values()).count(by_name[label]) > 1]
@@ -310,7 +318,7 @@ def _joints_of(path: Path, labels: Sequence[str], joints: Sequence[str]) -> dict
     if len(numbers) == len(labels) and len(set(numbers.values())) == len(labels) and len(labels) >= len(joints):
         if len(labels) >= 2 * len(joints) and len(joints) > 3:
             raise RunnerError(
-                f"{path}: has {len(labels)} joint positions, and the robot {len(joints)}: two arms? Use a log of one arm."
+                f"{path}: has {len(labels)} joint positions, and the robot {len(joints)}: two arms? Use a log of one."
             )
         return dict(zip(ordered, joints, strict=False))
     if len(labels) == len(joints) and not by_name:
@@ -319,7 +327,9 @@ def _joints_of(path: Path, labels: Sequence[str], joints: Sequence[str]) -> dict
 
 
 def _plain(name: str) -> str:
-    return re.sub(r"[^a-z0-9]", "", name.lower())
+    """Return a joint's name without separators, and without "joint" at its end."""
+    plain = re.sub(r"[^a-z0-9]", "", name.lower())
+    return plain.removesuffix("joint") or plain
 
 
 def _position(
@@ -376,8 +386,8 @@ def _lerobot(
         reason = f"{one.reason}; the calibration file gives the range of {motor}"
         return Meaning(one.column, {**keys, "unit": "%", "scale": round(scale, 6)}, reason)
     asked = (
-        f'{low:.4g} to {high:.4g} is per cent of the calibrated range or degrees: say unit: deg, or unit: "%" and scale, '
-        "the position at 100 % in rad (or lay the calibration file beside info.json)"
+        f'{low:.4g} to {high:.4g} is per cent of the calibrated range or degrees: say unit: deg, or unit: "%" and '
+        "scale, the position at 100 % in rad (or lay the calibration file beside info.json)"
     )
     return Meaning(one.column, {**keys, "unit": None}, one.reason, asked)
 
@@ -421,7 +431,7 @@ def _torque(table: Table, one: Named, joint: str, model: RobotModel, place: int)
         keys["scale"] = None
         return Meaning(
             one.column, keys, one.reason,
-            f"per cent of a maximum, up to {largest:.3g}: say scale, the torque at 100 % (the file's limit: {limit:g} {si})",
+            f"per cent of a maximum, up to {largest:.3g}: say scale, the torque at 100 % (the limit is {limit:g} {si})",
         )  # fmt: skip
     if keys["unit"] not in WRITTEN[si]:
         return Meaning(one.column, {**keys, "unit": None}, one.reason, f"its unit {quoted(keys['unit'])} is not known")

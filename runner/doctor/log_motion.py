@@ -71,8 +71,8 @@ def make_motion(model: RobotModel, recording: Recording) -> LogMotion | None:
     worst = int(np.argmax(off / np.maximum(np.ptp(exact, axis=0), 1e-9)))
     unit = model.joint_units[worst]
     notes.append(
-        f"{len(t)} rows, {quantity(step, 's')} apart{f', smoothed at {frequency:.2g} Hz' if filtered else ''}; they differ "
-        f"from the log by up to {quantity(float(off[worst]), unit)} at {model.joint_names[worst]}"
+        f"{len(t)} rows, {quantity(step, 's')} apart{f', smoothed at {frequency:.2g} Hz' if filtered else ''}; they "
+        f"differ from the log by up to {quantity(float(off[worst]), unit)} at {model.joint_names[worst]}"
     )
     if any(moving):
         notes.append(f"the log begins or ends in motion: {_LEAD:g} s from or to rest are added")
@@ -92,7 +92,7 @@ def _in_motion(times: FloatArray, q: FloatArray) -> tuple[bool, bool]:
 
 
 def _rest_to_rest(times: FloatArray, q: FloatArray, step: float) -> tuple[FloatArray, FloatArray]:
-    """Return even rows of a motion, with a way from rest before a log that begins in motion, and after one that ends so.
+    """Return even rows of a motion, with a way from rest before a log that begins in motion, and one to rest after it.
 
     On that way the speed grows or falls as a smooth step, so that positions go on by half of speed times duration.
     """

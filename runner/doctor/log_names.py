@@ -124,16 +124,19 @@ _UNITS = {
     "s": "s", "sec": "s", "ms": "ms", "us": "us", "ns": "ns", "%": "%", "percent": "%",
 }  # fmt: skip
 _STEMS: Mapping[str, Kind] = {
-    **dict.fromkeys(("q_d", "q_des", "des_q", "desired_q", "target_q", "q_target", "q_cmd", "cmd_q", "command", "cmd", "ref",
-                     "q_ref", "reference", "action", "setpoint", "target", "desired", "q_c", "position_command"),
-                    "reference"),
-    **dict.fromkeys(("qd", "dq", "vel", "velocity", "speed", "joint_vel", "joint_velocity", "qdot", "actual_qd"), "velocity"),
-    **dict.fromkeys(("tau", "torque", "effort", "moment", "tq", "tau_j", "joint_torque", "joint_effort", "tau_meas",
-                     "measured_tq", "tau_measured", "measured_torque"), "torque"),
-    **dict.fromkeys(("current", "motor_current", "i", "cur", "actual_current"), "current"),
-    **dict.fromkeys(("q", "pos", "position", "joint", "angle", "joint_pos", "joint_position", "joint_angle", "theta", "j",
-                     "q_meas", "actual_q", "measured_q", "state", "actual", "axis", "q_actual"), "position"),
-}  # fmt: skip
+    stem: kind
+    for kind, stems in (
+        ("reference", "q_d q_des des_q desired_q target_q q_target q_cmd cmd_q command cmd ref q_ref reference action "
+                      "setpoint target desired q_c position_command"),
+        ("velocity", "qd dq vel velocity speed joint_vel joint_velocity qdot actual_qd"),
+        ("torque", "tau torque effort moment tq tau_j joint_torque joint_effort tau_meas measured_tq tau_measured "
+                   "measured_torque"),
+        ("current", "current motor_current i cur actual_current"),
+        ("position", "q pos position joint angle joint_pos joint_position joint_angle theta j q_meas actual_q measured_q "
+                     "state actual axis q_actual"),
+    )
+    for stem in stems.split()
+}  # type: ignore[misc]  # fmt: skip
 _TIMES = (
     "time",
     "t",

@@ -31,6 +31,8 @@ _CLEARLY = 0.5  # of the sum of logarithms: another meaning explains 40 % more
 _LEAST = {"torque": 0.3, "tip": 0.03, "reference": 0.1}  # r above which a meaning is doubted at all
 _NOISE = {"torque": 0.05, "tip": 0.005, "reference": 0.05}  # of a signal's size, below which r tells nothing
 _DEGREE = np.pi / 180.0
+_SLOWEST_ROWS = 0.5  # s
+_TOO_FAST = 3.0  # times the limit of a joint's speed, in half of all rows
 _ZERO = 1e-9  # N m: what is smaller in all rows is no torque
 _MOVES = 1e-4  # rad or m: what moves less tells nothing
 _LENGTHS = ((1e-3, "fits if it is in mm", "unit: mm"), (1e3, "fits if it is in m", "unit: m"))
@@ -86,7 +88,7 @@ def check_consistency(model: RobotModel, recording: Recording) -> Verdict:
     """
     joints = model.joint_names
     q = recording.positions(joints)
-    questions = list(_empty_torques(recording))
+    questions = [*_empty_torques(recording), *_times_of_another_unit(model, recording)]
     if questions or q is None:
         return Verdict(tuple(questions), (), {})
     if not (np.ptp(q, axis=0) > _MOVES).any():
@@ -108,6 +110,23 @@ def _empty_torques(recording: Recording) -> Iterator[str]:
                 f"columns.{recording.columns[signal]}: the torque of {signal.of} is 0 in all rows (largest "
                 f"{np.abs(values).max():.3g}): the drive reports none. Leave out the column."
             )
+
+
+def _times_of_another_unit(model: RobotModel, recording: Recording) -> Iterator[str]:
+    if recording.period > _SLOWEST_ROWS:
+        yield (
+            f"time: rows are {recording.period:.3g} s apart: is it in ms, or a number of rows? Say unit: ms, or rate "
+            "instead of time."
+        )
+    for joint, limit in zip(model.joint_names, model.velocity_limits.tolist(), strict=True):
+        values = recording.signals.get(Signal("position", joint))
+        if values is not None:
+            speed = float(np.median(np.abs(np.diff(values)) / np.diff(recording.t)))
+            if speed > _TOO_FAST * limit:
+                yield (
+                    f"columns.{recording.columns[Signal('position', joint)]}: {joint} would move at {speed:.3g}, and its "
+                    f"limit is {limit:.3g}: correct the unit of the time, or of the column."
+                )
 
 
 def _motion(recording: Recording, joints: Sequence[str], q: FloatArray) -> _Motion:
