@@ -15,7 +15,7 @@ from runner.doctor.finding import Finding
 from runner.doctor.log_motion import LogMotion, make_motion
 from runner.doctor.log_names import Named, named, writer_of
 from runner.recordings.columns_map import ColumnsMap, factors_of, read_map
-from runner.recordings.consistency import check_consistency
+from runner.recordings.consistency import WITHOUT_GRAVITY, check_consistency
 from runner.recordings.files import read_table
 from runner.recordings.parquet import calibration_of
 from runner.recordings.recording import Recording, to_recording
@@ -150,31 +150,23 @@ def judge(found: LogExamination, model: RobotModel, said: ColumnsMap) -> LogExam
         )
     findings = [Finding("note", "rows", note) for note in recording.notes if note not in found.table.notes]
     if recording.filled:
-        findings.append(
-            Finding("ask", "rows", f"{len(recording.filled)} gaps of up to {max(recording.filled):.3g} s",
-                    "add --fill-gaps 100ms to compare, or cut the log")
-        )  # fmt: skip
+        gaps = f"{len(recording.filled)} gaps of up to {max(recording.filled):.3g} s"
+        findings.append(Finding("note", "rows", gaps, "--fill-gaps fills them"))
     verdict = check_consistency(model, recording)
-    if (
-        any(question.endswith("Say holds: without_gravity.") for question in verdict.questions)
-        and len(verdict.questions) == 1
-    ):
+    gravity = [question for question in verdict.questions if question.endswith(WITHOUT_GRAVITY)]
+    if gravity and len(verdict.questions) == 1:
+        reason = gravity[0].removesuffix(WITHOUT_GRAVITY).strip()
         meanings = [
-            replace(
-                one,
-                keys={**one.keys, "holds": "without_gravity"},
-                reason=verdict.questions[0].removesuffix(" Say holds: without_gravity."),
-            )
-            if "torque" in one.keys and not one.asked
-            else one
+            replace(one, keys={**one.keys, "holds": "without_gravity"}) if "torque" in one.keys else one
             for one in found.meanings
         ]
-        found = replace(found, meanings=meanings)
-        said = ColumnsMap.model_validate(map_of(found, said.topic, said.episode))
-        findings.append(
-            Finding("note", "torques", meanings[-1].reason if "torque" in meanings[-1].keys else "without gravity")
-        )
-        return judge(replace(found, findings=[*found.findings, *findings]), model, said)
+        columns = {
+            name: column.model_copy(update={"holds": "without_gravity"}) if column.torque else column
+            for name, column in said.columns.items()
+        }
+        notes = [*found.findings, Finding("note", "torques", reason, "holds: without_gravity is proposed")]
+        without = said.model_copy(update={"columns": columns})
+        return judge(replace(found, meanings=meanings, findings=notes), model, without)
     findings += [Finding("ask", *_split(question)) for question in verdict.questions]
     findings += [Finding("note", "tip", note) for note in verdict.notes]
     findings += _still(model, recording)
@@ -184,7 +176,7 @@ def judge(found: LogExamination, model: RobotModel, said: ColumnsMap) -> LogExam
             "nothing in the log tells its sign"
         )  # fmt: skip
         findings.append(Finding("note", f"joint '{joint}'", text))
-    open_positions = any(f.grade == "ask" for f in findings if f.place != "rows")
+    open_positions = any(finding.grade == "ask" for finding in findings)
     motion = None if open_positions else make_motion(model, recording)
     findings += [] if motion is None else [Finding("note", "motion", note) for note in motion.notes]
     return replace(found, findings=[*found.findings, *findings], recording=recording, motion=motion)

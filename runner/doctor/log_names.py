@@ -132,8 +132,8 @@ _STEMS: Mapping[str, Kind] = {
         ("torque", "tau torque effort moment tq tau_j joint_torque joint_effort tau_meas measured_tq tau_measured "
                    "measured_torque"),
         ("current", "current motor_current i cur actual_current"),
-        ("position", "q pos position joint angle joint_pos joint_position joint_angle theta j q_meas actual_q measured_q "
-                     "state actual axis q_actual"),
+        ("position", "q pos position joint angle joint_pos joint_position joint_angle theta j q_meas actual_q "
+                     "measured_q state actual axis q_actual"),
     )
     for stem in stems.split()
 }  # type: ignore[misc]  # fmt: skip

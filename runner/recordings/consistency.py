@@ -28,7 +28,7 @@ from runner.robots.model import RobotModel
 
 _ROWS = 300  # at which the equations are worked out
 _CLEARLY = 0.5  # of the sum of logarithms: another meaning explains 40 % more
-_LEAST = {"torque": 0.3, "tip": 0.03, "reference": 0.1}  # r above which a meaning is doubted at all
+_LEAST = {"torque": 0.15, "tip": 0.03, "reference": 0.1}  # r above which a meaning is doubted at all
 _NOISE = {"torque": 0.05, "tip": 0.005, "reference": 0.05}  # of a signal's size, below which r tells nothing
 _DEGREE = np.pi / 180.0
 _SLOWEST_ROWS = 0.5  # s
@@ -37,7 +37,13 @@ _ZERO = 1e-9  # N m: what is smaller in all rows is no torque
 _MOVES = 1e-4  # rad or m: what moves less tells nothing
 _LENGTHS = ((1e-3, "fits if it is in mm", "unit: mm"), (1e3, "fits if it is in m", "unit: m"))
 _OFFSET = 1e-3  # m, of the tip, that is told
+_WORSE = 0.1  # of a torque
+_DOUBTED, _HALVED = 0.25, 0.5  # r from which on the unit of a torque is doubted, and how much less another one leaves
 _OTHER_SCALE = 3.0  # times the model's torque, from which on a unit is doubted
+
+_NO_GRAVITY = "holds: without_gravity"
+WITHOUT_GRAVITY = f"Say {_NO_GRAVITY}."
+"""End of the question whether gravity is in the torques."""
 
 
 @dataclass(frozen=True)
@@ -88,7 +94,7 @@ def check_consistency(model: RobotModel, recording: Recording) -> Verdict:
     """
     joints = model.joint_names
     q = recording.positions(joints)
-    questions = [*_empty_torques(recording), *_times_of_another_unit(model, recording)]
+    questions = [*_empty_torques(recording), *_slow_rows(recording)]
     if questions or q is None:
         return Verdict(tuple(questions), (), {})
     if not (np.ptp(q, axis=0) > _MOVES).any():
@@ -99,6 +105,7 @@ def check_consistency(model: RobotModel, recording: Recording) -> Verdict:
     chosen, changed = _best(judge, motion, before, list(_meanings(model, recording, motion)))
     questions += [_question(meaning, joints, before, judge.lacks(changed)) for meaning in chosen]
     notes = [] if questions else list(_tip_offset(model, judge, motion))
+    questions += [] if questions else list(_too_fast(model, recording, q))
     questions += [] if questions else list(_scales(judge, motion, recording, joints))
     return Verdict(tuple(questions), tuple(notes), {} if questions else dict(_confirmed(judge, motion, before, joints)))
 
@@ -112,21 +119,24 @@ def _empty_torques(recording: Recording) -> Iterator[str]:
             )
 
 
-def _times_of_another_unit(model: RobotModel, recording: Recording) -> Iterator[str]:
+def _slow_rows(recording: Recording) -> Iterator[str]:
     if recording.period > _SLOWEST_ROWS:
         yield (
             f"time: rows are {recording.period:.3g} s apart: is it in ms, or a number of rows? Say unit: ms, or rate "
             "instead of time."
         )
-    for joint, limit in zip(model.joint_names, model.velocity_limits.tolist(), strict=True):
-        values = recording.signals.get(Signal("position", joint))
-        if values is not None:
-            speed = float(np.median(np.abs(np.diff(values)) / np.diff(recording.t)))
-            if speed > _TOO_FAST * limit:
-                yield (
-                    f"columns.{recording.columns[Signal('position', joint)]}: {joint} would move at {speed:.3g}, and its "
-                    f"limit is {limit:.3g}: correct the unit of the time, or of the column."
-                )
+
+
+def _too_fast(model: RobotModel, recording: Recording, q: FloatArray) -> Iterator[str]:
+    speeds = np.median(np.abs(np.diff(q, axis=0)) / np.diff(recording.t)[:, None], axis=0)
+    fast = np.flatnonzero(speeds > _TOO_FAST * model.velocity_limits)
+    if len(fast):
+        joint = model.joint_names[fast[0]]
+        yield (
+            f"columns.{recording.columns[Signal('position', joint)]}: {joint} would move at {speeds[fast[0]]:.3g} "
+            f"{model.joint_units[fast[0]]}/s, and its limit is {model.velocity_limits[fast[0]]:.3g}"
+            f"{f' ({len(fast)} joints like this)' if len(fast) > 1 else ''}. Say the unit of the time, or of the column."
+        )
 
 
 def _motion(recording: Recording, joints: Sequence[str], q: FloatArray) -> _Motion:
@@ -213,7 +223,11 @@ def _best(
     chosen: list[_Meaning] = []
     total = _total(before)
     while any(lack > _LEAST[kind] for (kind, _), lack in before.items()) and len(chosen) < motion.q.shape[1]:
-        tried = [(_total(judge.lacks(meaning.change(motion))), number) for number, meaning in enumerate(meanings)]
+        tried = [
+            (_total(lacks), number)
+            for number, meaning in enumerate(meanings)
+            if not _spoils(meaning, before, lacks := judge.lacks(meaning.change(motion)))
+        ]
         least, number = min(tried, default=(total, 0))
         if least > total - _CLEARLY:
             break
@@ -222,6 +236,11 @@ def _best(
         meanings = [meaning for meaning in meanings if meaning is not chosen[-1]]
         before = judge.lacks(motion)
     return chosen, motion
+
+
+def _spoils(meaning: _Meaning, before: dict[tuple[str, int], float], after: dict[tuple[str, int], float]) -> bool:
+    """Return whether a meaning of all torques makes one of them fit worse: that of another one is wrong then."""
+    return meaning.line == _NO_GRAVITY and any(after[key] > lack + _WORSE for key, lack in before.items())
 
 
 def _meanings(model: RobotModel, recording: Recording, motion: _Motion) -> Iterator[_Meaning]:
@@ -262,7 +281,7 @@ def _meanings(model: RobotModel, recording: Recording, motion: _Motion) -> Itera
         )
     if torques and recording.holds != "without_gravity":
         whole = "columns of torques: fit if gravity is not in them"
-        yield _Meaning(whole, "holds: without_gravity", _gravity_added(model))
+        yield _Meaning(whole, _NO_GRAVITY, _gravity_added(model))
 
 
 def _gravity_added(model: RobotModel) -> _Change:
@@ -337,7 +356,7 @@ def _scales(judge: _Judge, motion: _Motion, recording: Recording, joints: Sequen
     """Yield a question for each torque that fits the model in another unit only."""
     rigid = judge.rigid(motion) if not np.isnan(motion.torque[0]).all() else None
     for (kind, joint), lack in judge.lacks(motion).items():
-        if kind != "torque" or lack < 0.6 or rigid is None:
+        if kind != "torque" or lack < _DOUBTED or rigid is None:
             continue
         y, model = motion.torque[:, joint], rigid[:, joint]
         scale = float(y @ model) / max(float(model @ model), _ZERO)
@@ -346,7 +365,7 @@ def _scales(judge: _Judge, motion: _Motion, recording: Recording, joints: Sequen
         speed = motion.dq[:, joint]
         columns = np.column_stack([model, motion.ddq[:, joint], speed, np.sign(speed)])
         then = nnls(columns, y)[1] / max(float(np.linalg.norm(y)), _ZERO)
-        if then < _LEAST["torque"]:
+        if then < _HALVED * lack:
             name = recording.columns[Signal("torque", joints[joint])]
             yield (
                 f"columns.{name}: the torque of {joints[joint]} is {scale:.3g} times the model's; {lack:.0%} is "
