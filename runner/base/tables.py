@@ -42,7 +42,7 @@ class Table:
         units: Unit of a column by the file's line of units.
         lines: Number of each row's line in the file, shape (N,); None for a file without lines.
         others: Columns that hold no numbers.
-        notes: Texts for a user: rows that are left out, and parts of the file that cannot be read.
+        notes: Messages for a user: rows that are left out, and parts of the file that cannot be read.
     """
 
     path: Path
@@ -126,7 +126,7 @@ def read_text_table(path: Path, file: TextIO, wanted: Sequence[str] | None = Non
         form: Words for what the text is, such as "text in a zip file".
 
     Raises:
-        RunnerError: if it is no table, lacks a column, or has a cell without a number; names the line.
+        RunnerError: if it is not a table, lacks a column, or has a cell without a number; names the line.
         ExcessError: if it is too large.
     """
     layout = _layout(path, file)
@@ -261,7 +261,7 @@ class _Numbers:
     def read(
         self, rows: Iterable[tuple[int, list[str]]], source: _Rows
     ) -> tuple[FloatArray, NDArray[np.int64], tuple[str, ...]]:
-        """Return the numbers, shape (N, n), the line of each row, and texts for a user."""
+        """Return the numbers, shape (N, n), the line of each row, and messages for a user."""
         data, lines, count = array("d"), array("q"), len(self._names)
         most = max(1, max(self._places, default=0) + 1)
         pick: Callable[[list[str]], Sequence[str]] = (

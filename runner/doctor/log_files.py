@@ -62,7 +62,7 @@ def _flow(value: object) -> str:
 
 
 def next_line(found: LogExamination, robot: str, folder: Path) -> str:
-    """Return the line that runs the motion and compares the run with the log; or how to go on after questions."""
+    """Return the line that runs the motion and compares the run with the log; or the line that follows the answers."""
     log, columns = shlex.quote(str(found.table.path)), shlex.quote(str(folder / MAP))
     if found.motion is None:
         return shlex.join(

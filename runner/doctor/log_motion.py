@@ -94,7 +94,7 @@ def _in_motion(times: FloatArray, q: FloatArray) -> tuple[bool, bool]:
 def _rest_to_rest(times: FloatArray, q: FloatArray, step: float) -> tuple[FloatArray, FloatArray]:
     """Return even rows of a motion, with a way from rest before a log that begins in motion, and one to rest after it.
 
-    On that way the speed grows or falls as a smooth step, so that positions go on by half of speed times duration.
+    On that way the speed grows or falls as a smooth step, so that positions change by half of speed times duration.
     """
     first, last = _in_motion(times, q)
     count = max(3, int(np.ceil((times[-1] - times[0]) / step)) + 1)

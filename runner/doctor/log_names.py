@@ -8,6 +8,7 @@ from typing import Literal
 from runner.recordings.messages import STAMP
 
 Kind = Literal["time", "position", "reference", "velocity", "torque", "current", "tip"]
+_Column = tuple[str, Kind, str, str, str]
 
 
 @dataclass(frozen=True)
@@ -22,7 +23,7 @@ class Named:
         unit: Unit; empty if the name does not tell it.
         reason: Why.
         holds: Of a torque, see Column; empty if the name does not tell it.
-        side: Likewise.
+        side: Of a torque, see Column; empty if the name does not tell it.
     """
 
     column: str
@@ -44,11 +45,11 @@ class _Writer:
 
     name: str
     known: str
-    columns: Sequence[tuple[str, Kind, str, str, str]]
+    columns: Sequence[_Column]
 
 
 _J = r"_(?P<label>\d+)"
-_RTDE = (
+_RTDE: Sequence[_Column] = (
     (r"timestamp", "time", "s", "", ""),
     (rf"actual_q{_J}", "position", "rad", "", ""),
     (rf"target_q{_J}", "reference", "rad", "", ""),
@@ -123,20 +124,25 @@ _UNITS = {
     "nm": "N m", "n m": "N m", "n*m": "N m", "n.m": "N m", "mnm": "mN m", "a": "A", "amp": "A", "ma": "mA",
     "s": "s", "sec": "s", "ms": "ms", "us": "us", "ns": "ns", "%": "%", "percent": "%",
 }  # fmt: skip
-_STEMS: Mapping[str, Kind] = {
-    stem: kind
-    for kind, stems in (
-        ("reference", "q_d q_des des_q desired_q target_q q_target q_cmd cmd_q command cmd ref q_ref reference action "
-                      "setpoint target desired q_c position_command"),
-        ("velocity", "qd dq vel velocity speed joint_vel joint_velocity qdot actual_qd"),
-        ("torque", "tau torque effort moment tq tau_j joint_torque joint_effort tau_meas measured_tq tau_measured "
-                   "measured_torque"),
-        ("current", "current motor_current i cur actual_current"),
-        ("position", "q pos position joint angle joint_pos joint_position joint_angle theta j q_meas actual_q "
-                     "measured_q state actual axis q_actual"),
-    )
-    for stem in stems.split()
-}  # type: ignore[misc]  # fmt: skip
+_WORDS: Sequence[tuple[Kind, str]] = (
+    (
+        "reference",
+        "q_d q_des des_q desired_q target_q q_target q_cmd cmd_q command cmd ref q_ref reference action "
+        "setpoint target desired q_c position_command",
+    ),
+    ("velocity", "qd dq vel velocity speed joint_vel joint_velocity qdot actual_qd"),
+    (
+        "torque",
+        "tau torque effort moment tq tau_j joint_torque joint_effort tau_meas measured_tq tau_measured measured_torque",
+    ),
+    ("current", "current motor_current i cur actual_current"),
+    (
+        "position",
+        "q pos position joint angle joint_pos joint_position joint_angle theta j q_meas actual_q "
+        "measured_q state actual axis q_actual",
+    ),
+)
+_STEMS: Mapping[str, Kind] = {stem: kind for kind, stems in _WORDS for stem in stems.split()}
 _TIMES = (
     "time",
     "t",

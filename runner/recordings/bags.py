@@ -80,7 +80,7 @@ def read_bag(path: Path, topic: str | None) -> Table:
 
     Args:
         path: The bag, a file or a folder.
-        topic: The topic; None where the bag has one alone.
+        topic: The topic; None if the bag has only one.
 
     Raises:
         RunnerError: if it cannot be read, or lacks the topic.

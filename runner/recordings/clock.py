@@ -24,7 +24,7 @@ class Clock(NamedTuple):
     Attributes:
         t: Times since the first row, in s, shape (M,).
         rows: The row of the log of each, shape (M,).
-        notes: Texts for a user.
+        notes: Messages for a user.
     """
 
     t: FloatArray

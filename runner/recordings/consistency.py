@@ -26,19 +26,19 @@ from runner.recordings.recording import Recording
 from runner.recordings.smoothing import cutoff, derivative, evenly, low_pass
 from runner.robots.model import RobotModel
 
-_ROWS = 300  # at which the equations are worked out
+_ROWS = 300  # at which the equations are evaluated
 _CLEARLY = 0.5  # of the sum of logarithms: another meaning explains 40 % more
 _LEAST = {"torque": 0.15, "tip": 0.03, "reference": 0.1}  # r above which a meaning is doubted at all
 _NOISE = {"torque": 0.05, "tip": 0.005, "reference": 0.05}  # of a signal's size, below which r tells nothing
 _DEGREE = np.pi / 180.0
 _SLOWEST_ROWS = 0.5  # s
 _TOO_FAST = 3.0  # times the limit of a joint's speed, in half of all rows
-_ZERO = 1e-9  # N m: what is smaller in all rows is no torque
+_ZERO = 1e-9  # N m: a torque that is smaller in all rows counts as zero
 _MOVES = 1e-4  # rad or m: what moves less tells nothing
 _LENGTHS = ((1e-3, "fits if it is in mm", "unit: mm"), (1e3, "fits if it is in m", "unit: m"))
 _OFFSET = 1e-3  # m, of the tip, that is told
 _WORSE = 0.1  # of a torque
-_DOUBTED, _HALVED = 0.25, 0.5  # r from which on the unit of a torque is doubted, and how much less another one leaves
+_DOUBTED, _HALVED = 0.1, 0.5  # r from which on the unit of a torque is doubted, and how much less another one leaves
 _OTHER_SCALE = 3.0  # times the model's torque, from which on a unit is doubted
 
 _NO_GRAVITY = "holds: without_gravity"
@@ -135,7 +135,7 @@ def _too_fast(model: RobotModel, recording: Recording, q: FloatArray) -> Iterato
         yield (
             f"columns.{recording.columns[Signal('position', joint)]}: {joint} would move at {speeds[fast[0]]:.3g} "
             f"{model.joint_units[fast[0]]}/s, and its limit is {model.velocity_limits[fast[0]]:.3g}"
-            f"{f' ({len(fast)} joints like this)' if len(fast) > 1 else ''}. Say the unit of the time, or of the column."
+            f"{f' ({len(fast)} joints like this)' if len(fast) > 1 else ''}. Say the unit of the time or the column."
         )
 
 

@@ -34,11 +34,11 @@ def read_table(
     Args:
         path: The log, a file or a folder.
         wanted: The columns to read, each of whose cells holds a number or nothing; None for all that hold numbers.
-        topic: Of a ROS bag: the topic of the joint states; None where it has one alone.
+        topic: Of a ROS bag: the topic of the joint states; None if it has only one.
         episode: Of a LeRobot data set: the episode; None for its longest.
 
     Raises:
-        RunnerError: if it is no log that is known, cannot be read, or lacks a column; names the line.
+        RunnerError: if it is not a known log, cannot be read, or lacks a column; names the line.
     """
     try:
         table = _read(path, wanted, topic, episode)
@@ -69,9 +69,7 @@ def _read(path: Path, wanted: Sequence[str] | None, topic: str | None, episode: 
     if head.startswith(b"PK\x03\x04"):
         return _read_zip(path, wanted)
     if b"\0" in head:
-        raise RunnerError(
-            f"{path}: is no log that is known. Allowed: text, Parquet, a zip of mecademicpy or a ROS bag."
-        )
+        raise RunnerError(f"{path}: is not a known log. Allowed: text, Parquet, a zip of mecademicpy or a ROS bag.")
     with path.open(encoding="utf-8-sig", errors="replace", newline="") as text:
         return read_text_table(path, text, wanted)
 
@@ -86,7 +84,7 @@ def _read_folder(path: Path, topic: str | None, episode: int | None) -> Table:
     if count <= LOG_FILES.most and bag_files(path):
         return read_bag(path, topic)
     many = f"more than {LOG_FILES.most:,}" if count > LOG_FILES.most else f"{count:,}"
-    raise RunnerError(f"{path}: a folder of {many} files is no log. Allowed: one file, {_FOLDERS}.")
+    raise RunnerError(f"{path}: a folder of {many} files is not a log. Allowed: one file, {_FOLDERS}.")
 
 
 def _read_zip(path: Path, wanted: Sequence[str] | None) -> Table:

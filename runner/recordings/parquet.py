@@ -29,7 +29,7 @@ def read_parquet(path: Path, episode: int | None = None) -> Table:
         episode: The only episode to read, where the file has a column of episodes; None for its longest.
 
     Raises:
-        RunnerError: if it is no such file, or lacks the episode.
+        RunnerError: if it is not such a file, or lacks the episode.
         ExcessError: if it is too large.
     """
     table = _table(path)
@@ -67,7 +67,7 @@ def json_object(path: Path) -> Mapping[str, Any]:
     """
     content = decode_json(read_text(path, RECORDING))
     if not isinstance(content, dict):
-        raise ValueError("it is no JSON object")
+        raise ValueError("it is not a JSON object")
     return content
 
 
@@ -115,7 +115,7 @@ def _table(path: Path, columns: list[str] | None = None) -> Any:
             raise ExcessError(f"it {excess}")
         return file.read(columns)
     except pyarrow.ArrowException as error:
-        raise RunnerError(f"{path}: is no Parquet file: {str(error).splitlines()[0]}") from error
+        raise RunnerError(f"{path}: is not a Parquet file: {str(error).splitlines()[0]}") from error
 
 
 def _columns(table: Any, names: Mapping[str, Sequence[str]]) -> tuple[dict[str, FloatArray], tuple[str, ...]]:
@@ -183,5 +183,5 @@ def calibration_of(path: Path) -> dict[str, Mapping[str, float]]:
                 for motor, values in found.items()
             }
         except (OSError, ValueError, TypeError, KeyError, json.JSONDecodeError) as error:
-            raise RunnerError(f"{file}: is no calibration of LeRobot ({quoted(str(error))})") from error
+            raise RunnerError(f"{file}: is not a calibration of LeRobot ({quoted(str(error))})") from error
     return {}

@@ -40,7 +40,7 @@ class Recording:
         filled: Gaps that were filled, in s.
         holds: What the torques are.
         side: The side of the gears on which torques are measured.
-        notes: Texts for a user: what was done to rows and columns.
+        notes: Messages for a user: what was done to rows and columns.
     """
 
     path: Path
@@ -114,7 +114,7 @@ def to_recording(table: Table, said: ColumnsMap, factors: Mapping[str, Factor], 
     for name, column in said.columns.items():
         numbers, jumps = _unwrapped(table.columns[name][clock.rows], column, factors[name])
         if jumps:
-            notes.append(f"{name} jumps by a turn {jumps} times: it is taken as going on")
+            notes.append(f"{name} jumps by a turn {jumps} times: the jumps are removed")
         values = _in_si(table, name, numbers - column.zero, factors[name], clock)
         own[column.signal], gaps = _filled(table, name, clock, values, column.signal, fill_gaps)
         filled += gaps
@@ -169,7 +169,7 @@ def _without_stale(table: Table, said: ColumnsMap, clock: Clock) -> Clock:
 
 
 def _unwrapped(numbers: FloatArray, column: Column, factor: Factor) -> tuple[FloatArray, int]:
-    """Return a column that goes on where it starts again, and how often it does."""
+    """Return a column without its jumps by a turn, and their number."""
     if column.signal.kind not in ("position", "reference") or (column.wrap is None and factor.unit != "rad"):
         return numbers, 0
     turn = column.wrap or 2.0 * np.pi / abs(factor.factor)

@@ -208,23 +208,26 @@ def test_the_printed_line_runs_and_compares(cli, tmp_path, arm, signals, monkeyp
     assert "elbow_joint          Coulomb" in compared.out
 
 
+def doubled(table):
+    return table.assign(**{f"q{place}": table[f"q{place - 6}"] for place in range(7, 13)})
+
+
 @pytest.mark.parametrize(
     ("make", "options", "wanted"),
     [
         (lambda p, f: (p / "log.csv").write_text(""), [], "is empty"),
-        (lambda p, f: (p / "log.csv").write_bytes(b"\x00\x01" * 1000), [], "is no log that is known"),
+        (lambda p, f: (p / "log.csv").write_bytes(b"\x00\x01" * 1000), [], "is not a known log"),
         (lambda p, f: (p / "log.csv").write_text("once upon a time\nthere was an arm\n"), [], "no columns of joint"),
         (lambda p, f: f[:200].to_csv(p / "log.csv", index=False), [], "the log lasts 1.59 s"),
         (lambda p, f: [(p / "log.csv").mkdir(), *((p / "log.csv" / str(k)).touch() for k in range(1000))], [],
-         "a folder of 1,000 files is no log"),
+         "a folder of 1,000 files is not a log"),
         (lambda p, f: f.to_csv(p / "log.csv", index=False), ["--tip", "tool0"], "--tip: is for robot files"),
         (lambda p, f: f.to_csv(p / "log.csv", index=False), ["--name", "x"], "--name: is for robot files"),
         (lambda p, f: f.to_csv(p / "log.csv", index=False), ["--package-path", "x"], "--package-path: is for robot"),
         (lambda p, f: f.to_csv(p / "log.csv", index=False), ["--format", "html"], "--format: is for robot files"),
         (lambda p, f: f.to_csv(p / "log.csv", index=False), ["--topic", "/a"], "topic: is for ROS bags"),
         (lambda p, f: f.to_csv(p / "log.csv", index=False), ["--episode", "1"], "episode: is for LeRobot"),
-        (lambda p, f: f.assign(**{f"q{k}": f[f"q{k - 6}"] for k in range(7, 13)}).to_csv(p / "log.csv", index=False), [],
-         "two arms"),
+        (lambda p, f: doubled(f).to_csv(p / "log.csv", index=False), [], "two arms"),
     ],
 )  # fmt: skip
 def test_bad_input_is_one_sentence_and_nothing_is_written(cli, tmp_path, arm, signals, make, options, wanted):

@@ -95,7 +95,7 @@ def test_a_column_that_starts_again_goes_on(tmp_path, keys, turn):
     path = write(tmp_path, ["a", *map(str, (degrees + turn / 2) % turn - turn / 2)])
     found = read_recording(path, keyed(**keys), {"a": Factor(np.pi / 180.0, "rad")})
     assert found.signals[Q1] == pytest.approx(np.radians(degrees))
-    assert found.notes == [f"a jumps by a turn {int((495.0 + turn / 2) // turn)} times: it is taken as going on"]
+    assert found.notes == [f"a jumps by a turn {int((495.0 + turn / 2) // turn)} times: the jumps are removed"]
 
 
 def test_coupled_joints(tmp_path):
