@@ -69,7 +69,7 @@ def judge_log(seed: int) -> tuple[str, str]:
     if asked.questions:
         return fault, "asked"
     silent = [name for name in touched if f"joint '{name}': nothing in the log" in " ".join(map(str, asked.findings))]
-    return fault, "said: not told by it" if silent else "MISSED"
+    return fault, "said: not seen in it" if silent else "MISSED"
 
 
 @cache

@@ -1,4 +1,4 @@
-"""Columns of numbers in text files, and how such a file is laid out, told by its content.
+"""Columns of numbers in text files, and the layout of such a file, from its content.
 
 Commas, semicolons, tabs or blanks separate the cells. Lines of comments may stand above the names of the columns, and
 a line of units below them. If commas do not separate cells, they may be decimal points.
@@ -26,7 +26,7 @@ MISSING = ("", "nan", "na", "null", "none", "-nan", "nan(ind)", "-nan(ind)")
 """Cells without a number, in lower case."""
 
 _COMMENTS = ("#", "%", "//")
-_HEAD = 200  # lines, of which comments may take up all but the last two
+_HEAD = 200  # lines, all but the last two may be comments
 _SAMPLE = 50  # rows that tell whether a column has numbers
 _MOST_TOLD = 5  # problems of one file
 
@@ -96,10 +96,10 @@ class Table:
         """
         known = list(self.columns)
         if missing := [name for name in names if name not in self.columns]:
-            told = [
+            shown = [
                 f"{quoted(name)}{' with numbers' * (name in self.others)}{nearest(name, known)}" for name in missing
             ]
-            raise RunnerError(f"{self.path}: has no column {few(told)}; its columns: {few(known) or 'none'}")
+            raise RunnerError(f"{self.path}: has no column {few(shown)}; its columns: {few(known) or 'none'}")
 
 
 @dataclass(frozen=True)
@@ -150,7 +150,7 @@ def read_text_table(path: Path, file: TextIO, wanted: Sequence[str] | None = Non
 
 
 def _layout(path: Path, file: TextIO) -> _Layout:
-    """Return how a text file is laid out; the file is read up to its second line without comment."""
+    """Return the layout of a text file; the file is read up to its second line without comment."""
     comments: list[str] = []
     found: list[tuple[int, str]] = []
     for number in range(1, _HEAD + 1):

@@ -97,8 +97,7 @@ def _examine_logs(options: Namespace) -> int:
             print(line)
         asked |= model is not None and found.motion is None
         if options.output is not None:
-            alone = len(examined) == 1
-            folder = options.output if alone else options.output / found.table.path.stem
+            folder = options.output / (found.table.path.stem if len(examined) > 1 else "")
             write_log_files(found, folder, options.columns, options.topic, options.episode)
             print(next_line(found, options.robot, folder))
     if options.output is not None:

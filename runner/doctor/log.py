@@ -38,7 +38,7 @@ class Meaning:
         column: The column.
         keys: Its keys in the column map; a value of None has to be filled in.
         reason: Why.
-        asked: What has to be told; empty if all is known. Such a column is written as a comment.
+        asked: Information that is missing; empty if all is known. Such a column is written as a comment.
     """
 
     column: str
@@ -379,7 +379,7 @@ def _lerobot(
         return Meaning(one.column, {**keys, "unit": "%", "scale": round(scale, 6)}, reason)
     asked = (
         f'{low:.4g} to {high:.4g} is per cent of the calibrated range or degrees: say unit: deg, or unit: "%" and '
-        "scale, the position at 100 % in rad (or lay the calibration file beside info.json)"
+        "scale, the position at 100 % in rad (or lay the calibration file into meta/)"
     )
     return Meaning(one.column, {**keys, "unit": None}, one.reason, asked)
 

@@ -49,11 +49,11 @@ def _time_line(values: FloatArray, time: Meaning) -> str:
     steps = np.diff(values[~np.isnan(values)]) * factor
     forward = steps[steps > 0.0]
     lasts = quantity(float(np.nanmax(values) - np.nanmin(values)) * factor, "s")
-    told = f"time    {time.column}: {time.keys.get('unit') or '?'} ({time.reason}); lasts {lasts}"
+    text = f"time    {time.column}: {time.keys.get('unit') or '?'} ({time.reason}); lasts {lasts}"
     if len(forward):
-        told += f", steps of {quantity(float(np.median(forward)), 's')}, at most {quantity(float(forward.max()), 's')}"
+        text += f", steps of {quantity(float(np.median(forward)), 's')}, at most {quantity(float(forward.max()), 's')}"
     repeated, back = int(np.sum(steps == 0.0)), int(np.sum(steps < 0.0))
-    return told + f", {repeated} repeat" * bool(repeated) + f", {back} run back" * bool(back)
+    return text + f", {repeated} repeat" * bool(repeated) + f", {back} run back" * bool(back)
 
 
 def _facts(values: FloatArray) -> str:
@@ -64,10 +64,10 @@ def _facts(values: FloatArray) -> str:
     if low == high:
         return f"always {low:.6g}"
     steps = np.abs(np.diff(known[:_MOST_ROWS]))
-    told = f"{low:.6g} to {high:.6g}"
+    text = f"{low:.6g} to {high:.6g}"
     if (steps > 0.0).any():
-        told += f", resolution {steps[steps > 0.0].min():.2g}"
+        text += f", resolution {steps[steps > 0.0].min():.2g}"
     if len(known) < len(values):
-        told += f", {1.0 - len(known) / len(values):.0%} missing"
+        text += f", {1.0 - len(known) / len(values):.0%} missing"
     same = float(np.mean(steps == 0.0)) if len(steps) else 0.0
-    return told + f", {same:.0%} repeat the row before" * (same > 0.01)
+    return text + f", {same:.0%} repeat the row before" * (same > 0.01)

@@ -30,7 +30,7 @@ _EXTRA = "`pip install 'arm-control-runner[ros]'` installs what reads it"
 
 
 class _Raw(NamedTuple):
-    """A message as it stands in a bag: topic, type, time of its record in ns, bytes."""
+    """A message of a bag: topic, type, time of its record in ns, bytes."""
 
     topic: str
     type: str
@@ -48,7 +48,7 @@ class _Contents:
 
 
 def form_of(path: Path) -> str:
-    """Return the name of the format of a bag's file, told by its first bytes; empty for another file."""
+    """Return the name of the format of a bag's file, from its first bytes; empty for another file."""
     with path.open("rb") as file:
         head = file.read(16)
     if head.startswith(_ZSTD):
@@ -206,7 +206,7 @@ def _of_sqlite(file: Path, topics: dict[str, str]) -> Iterator[_Raw]:
         topics.update({name: kind for name, kind in known.values() if name not in topics})
         wanted = [number for number, (_, kind) in known.items() if type_of(kind)]
         marks = ", ".join("?" * len(wanted))
-        query = f"SELECT topic_id, timestamp, data FROM messages WHERE topic_id IN ({marks})"  # noqa: S608 - marks alone
+        query = f"SELECT topic_id, timestamp, data FROM messages WHERE topic_id IN ({marks})"  # noqa: S608 - only marks
         for number, time, data in base.execute(query, wanted):
             yield _Raw(*known[number], int(time), bytes(data))
 

@@ -12,7 +12,7 @@ from runner.base.errors import RunnerError
 _ROUNDINGS = (0.01, 0.001)  # s
 _OFF_EVEN = 0.75  # of the rounding: what even rows may differ from it, with some drift of the clock
 _EXACT = 1e-4  # of the rounding
-_BACK = 1.0  # s: what is farther back is no swap of rows, but another log
+_BACK = 1.0  # s: a row that is farther back belongs to another log
 _SWAPPED, _REPEATED = 0.05, 0.6  # of all rows
 _GAP = 2.5  # usual times between two rows
 _SHORTEST_GAP = 0.02  # s: half of what the low-pass of 10 Hz leaves of a motion takes longer
@@ -74,7 +74,7 @@ def read_clock(t: FloatArray, place: Callable[[int], str]) -> Clock:
 
 
 def _rounding(t: FloatArray, steps: FloatArray) -> float:
-    """Return what the times of even rows are rounded to, in s; 0 if they are not."""
+    """Return the rounding of the times of even rows, in s; 0 without one."""
     if len(t) < 3 or (steps < 0.0).any() or np.ptp(steps) < _EXACT * _ROUNDINGS[-1]:
         return 0.0
     rows, exact = np.arange(len(t)), _EXACT * np.maximum(1.0, 1e-6 * t[-1] / np.array(_ROUNDINGS))

@@ -1,4 +1,4 @@
-r"""Contradictions between the signals of a log: sign, order and unit of joints, told by the arm's own equations.
+r"""Contradictions between the signals of a log: sign, order and unit of joints, by the arm's own equations.
 
 A log is compared with itself, not with a run: torques with those of the rigid body at the recorded motion, the tip with
 the forward kinematics, and positions with commanded ones. With the recorded torque tau_j of joint j and the
@@ -8,7 +8,7 @@ torque of the model \hat\tau_j, the lack of fit is
     c\,\mathrm{sgn}\,\dot q_j|}{|\tau_j|}
 
 The three columns stand for the inertia of the rotor and friction. As these cannot be below zero, the sign of a joint
-without gravity is told, too. Another meaning of a column is asked for if it lowers the sum of the logarithms of all r
+without gravity is seen, too. Another meaning of a column is asked for if it lowers the sum of the logarithms of all r
 clearly: errors of masses, friction and payload do not.
 """
 
@@ -36,7 +36,8 @@ _TOO_FAST = 3.0  # times the limit of a joint's speed, in half of all rows
 _ZERO = 1e-9  # N m: a torque that is smaller in all rows counts as zero
 _MOVES = 1e-4  # rad or m: what moves less tells nothing
 _LENGTHS = ((1e-3, "fits if it is in mm", "unit: mm"), (1e3, "fits if it is in m", "unit: m"))
-_OFFSET = 1e-3  # m, of the tip, that is told
+_OFFSET = 1e-3  # m, of the tip, that is reported
+_NO_TIP = 0.25  # r of a tip: a delay of 0.1 s leaves less
 _WORSE = 0.1  # of a torque
 _DOUBTED, _HALVED = 0.1, 0.5  # r from which on the unit of a torque is doubted, and how much less another one leaves
 _OTHER_SCALE = 3.0  # times the model's torque, from which on a unit is doubted
@@ -105,6 +106,7 @@ def check_consistency(model: RobotModel, recording: Recording) -> Verdict:
     chosen, changed = _best(judge, motion, before, list(_meanings(model, recording, motion)))
     questions += [_question(meaning, joints, before, judge.lacks(changed)) for meaning in chosen]
     notes = [] if questions else list(_tip_offset(model, judge, motion))
+    questions += [] if questions else list(_unexplained(before))
     questions += [] if questions else list(_too_fast(model, recording, q))
     questions += [] if questions else list(_scales(judge, motion, recording, joints))
     return Verdict(tuple(questions), tuple(notes), {} if questions else dict(_confirmed(judge, motion, before, joints)))
@@ -124,6 +126,15 @@ def _slow_rows(recording: Recording) -> Iterator[str]:
         yield (
             f"time: rows are {recording.period:.3g} s apart: is it in ms, or a number of rows? Say unit: ms, or rate "
             "instead of time."
+        )
+
+
+def _unexplained(lacks: dict[tuple[str, int], float]) -> Iterator[str]:
+    """Yield a question if the tip does not follow from the positions, and no other meaning of one column helps."""
+    if (lack := lacks.get(("tip", 0), 0.0)) > _NO_TIP:
+        yield (
+            f"columns of the tip: {lack:.0%} of its motion does not follow from the positions, in any order of two. "
+            "Say the right joints, the frame of the tip, or leave out its columns."
         )
 
 
@@ -199,7 +210,7 @@ class _Judge:
         return found
 
     def tip_rest(self, motion: _Motion) -> tuple[FloatArray, FloatArray]:
-        """Return what is left of the tip, shape (3 N,), and its offsets in the frame of the tip and in the base."""
+        """Return the residual of the tip, shape (3 N,), and its offsets in the frame of the tip and in the base."""
         axes = np.flatnonzero(~np.isnan(motion.tip[0]))
         blocks, apart = [], []
         for q, tip in zip(motion.q, motion.tip, strict=True):

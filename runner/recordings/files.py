@@ -88,7 +88,7 @@ def _read_folder(path: Path, topic: str | None, episode: int | None) -> Table:
 
 
 def _read_zip(path: Path, wanted: Sequence[str] | None) -> Table:
-    """Return the largest CSV file in a zip file, as mecademicpy writes them with a description beside."""
+    """Return the largest CSV file in a zip file, which mecademicpy writes together with a description."""
     with zipfile.ZipFile(path) as archive:
         texts = [item for item in archive.infolist() if item.filename.lower().endswith(".csv")]
         if not texts:

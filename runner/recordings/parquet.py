@@ -169,13 +169,15 @@ def _seconds(column: Any, unit: str) -> FloatArray:
 
 
 def calibration_of(path: Path) -> dict[str, Mapping[str, float]]:
-    """Return the ranges of a LeRobot calibration file beside a data set or in it, by motor; empty without one.
+    """Return the ranges of a LeRobot calibration file of a data set, by motor; empty without one.
 
     Raises:
         RunnerError: if a file of that name cannot be read.
     """
-    beside = [*path.glob("*calibration*.json"), *(path / "meta").glob("*calibration*.json")] if path.is_dir() else []
-    for file in sorted(beside)[:1]:
+    found_files = (
+        [*path.glob("*calibration*.json"), *(path / "meta").glob("*calibration*.json")] if path.is_dir() else []
+    )
+    for file in sorted(found_files)[:1]:
         try:
             found = json_object(file)
             return {

@@ -161,11 +161,11 @@ def _without_stale(table: Table, said: ColumnsMap, clock: Clock) -> Clock:
         return clock
     values = np.column_stack([table.columns[name][clock.rows] for name in moving])
     same = (np.diff(values, axis=0) == 0.0).all(axis=1)
-    alone = np.append(False, same) & ~np.append(np.append(False, False), same[:-1]) & ~np.append(same[1:], (True, True))
-    if alone.sum() <= _STALE * len(alone):
+    stale = np.append(False, same) & ~np.append(np.append(False, False), same[:-1]) & ~np.append(same[1:], (True, True))
+    if stale.sum() <= _STALE * len(stale):
         return clock
-    note = f"{alone.sum()} rows repeat the positions of the row before, in motion, and are left out"
-    return Clock(clock.t[~alone], clock.rows[~alone], [*clock.notes, note])
+    note = f"{stale.sum()} rows repeat the positions of the row before, in motion, and are left out"
+    return Clock(clock.t[~stale], clock.rows[~stale], [*clock.notes, note])
 
 
 def _unwrapped(numbers: FloatArray, column: Column, factor: Factor) -> tuple[FloatArray, int]:

@@ -39,7 +39,7 @@ class Setting:
     context: MetricContext
 
     def torques(self, holds: Holds, side: Side) -> FloatArray:
-        """Return what sensors of a kind would measure in the run, shape (T, nq), in N m; see Column."""
+        """Return the torques of the run as sensors of a kind would measure them, shape (T, nq), in N m; see Column."""
         model, q, dq, tau = self.config.arm.model, self.trace.q, self.trace.dq, self.trace.tau
         if side == "link":
             ddq = derivative(dq, float(np.median(np.diff(self.trace.t))))

@@ -42,8 +42,8 @@ def aligned_text(found: RecordingComparison) -> str:
         text += f"; the motion repeats itself: it fits nearly as well with time 0 at {others}"
     if recording.filled:
         many = len(recording.filled) > 1
-        told = f"{len(recording.filled)} gap{'s' * many} of up to {quantity(max(recording.filled), 's')}"
-        text += f"; {told} {'are' if many else 'is'} filled"
+        gaps = f"{len(recording.filled)} gap{'s' * many} of up to {quantity(max(recording.filled), 's')}"
+        text += f"; {gaps} {'are' if many else 'is'} filled"
     if recording.held and any(signal.kind == "torque" for signal in recording.signals):
         text += (
             f"; torques are taken as held from row to row, so that they count {quantity(recording.torque_shift, 's')} "

@@ -93,7 +93,7 @@ def write_bag(path: Path, messages, form=".mcap", compressed=None, kind="JointSt
 
 
 def write_mixed_mcap(path: Path, messages, profile="", cut=1.0):
-    """Write an MCAP by mcap: joint states beside JSON and protobuf, without a profile, and cut off as by a kill."""
+    """Write an MCAP by mcap: joint states with JSON and protobuf, without a profile, and cut off as by a kill."""
     from mcap.writer import Writer
 
     _, rows = serialized(messages)

@@ -104,14 +104,14 @@ def test_an_exchanged_pair_is_asked_for(arm):
 @pytest.mark.costs(3)
 def test_torques_of_another_meaning_are_asked_for(arm):
     name = arm.joint_names[1]
-    for change, told in (
+    for change, wanted in (
         (scaled(Signal("torque", name), -1.0), "opposite sign"),
         (scaled(Signal("torque", name), 1.0 / 0.87), None),
         (scaled(Signal("torque", name), 0.05), "times the model's"),
         (scaled(Signal("torque", name), 0.0), "is 0 in all rows"),
     ):
         questions = check_consistency(arm, made(arm, change=change)).questions
-        assert [told in question for question in questions] == ([True] if told else [])
+        assert [wanted in question for question in questions] == ([True] if wanted else [])
     (question,) = check_consistency(arm, made(arm, holds="without_gravity")).questions
     assert question.startswith("columns of torques: fit if gravity is not in them")
     assert question.endswith("Say holds: without_gravity.")
