@@ -116,7 +116,7 @@ def make_tree(robot: ET.Element, path: Path) -> UrdfTree:
     """
     links = {link.get("name", ""): link for link in robot.findall("link")}
     if robot.tag != "robot" or not links:
-        raise ConfigError(f"robot.urdf: {path} is no URDF: it needs a <robot> with links")
+        raise ConfigError(f"robot.urdf: {path} is not a URDF: it needs a <robot> with links")
     if path.suffix == ".xacro" or any(element.tag.startswith(_XACRO) for element in robot.iter()):
         made = f"{path.name.removesuffix('.xacro').removesuffix('.urdf')}{'_made' * (path.suffix == '.urdf')}.urdf"
         raise ConfigError(f"robot.urdf: {path} holds xacro macros; make a URDF of it first: xacro {path.name} > {made}")
@@ -179,7 +179,7 @@ def parse_xml(path: Path, key: str = "robot.urdf") -> ET.Element:
         raise ConfigError(f"{key}: {path} {error}") from error
     except (ET.ParseError, ValueError) as error:
         hint = "; xacro macros? Make a URDF of it first" if "unbound prefix" in str(error) else ""
-        raise ConfigError(f"{key}: {path} is no XML: {error}{hint}") from error
+        raise ConfigError(f"{key}: {path} is not XML: {error}{hint}") from error
     except OSError as error:
         raise ConfigError(f"{key}: {path} cannot be read: {error.strerror or error}") from error
 
@@ -206,7 +206,7 @@ def _rename_joints(robot: ET.Element, links: Collection[str]) -> tuple[str, ...]
             for element, key in ((joint, "name"), *((mimic, "joint") for mimic in robot.iterfind("joint/mimic"))):
                 if element.get(key) == name:
                     element.set(key, new)
-            told.append(f"joint '{name}' is '{new}', beside a link")
+            told.append(f"joint '{name}' is '{new}', as a link has the name")
     return tuple(told)
 
 
@@ -243,7 +243,7 @@ def _repeated(robot: ET.Element) -> list[str]:
 
 def _loose_ends(links: dict[str, ET.Element], joints: dict[str, ET.Element]) -> list[str]:
     return [
-        f"joint '{name}' has a {role} '{end_of(joint, role)}', which is no link{nearest(end_of(joint, role), links)}"
+        f"joint '{name}' has a {role} '{end_of(joint, role)}', which is not a link{nearest(end_of(joint, role), links)}"
         for name, joint in joints.items()
         for role in ("parent", "child")
         if end_of(joint, role) not in links
