@@ -80,7 +80,11 @@ def test_every_allowed_context_is_used(context):
         ("a.py", 'told = f"{told} and more"  # it is told apart\n', []),
         ("a.py", 'x = 1\ny = """A sentence.\n\nOf one alone."""', ["a.py:4: 'alone': write only, before its word"]),
         ("a.py", '"""Show it.\n\n    told: It is `told`.\n    """', []),
-        ("a.py", "# beside\nx = 1  # the row beside it\n", ["a.py:2: 'beside': write next to; besides; in addition to"]),
+        (
+            "a.py",
+            "# beside\nx = 1  # the row beside it\n",
+            ["a.py:2: 'beside': write next to; besides; in addition to"],
+        ),
         ("a.yaml", "alone: 1 # of which one is\n", ["a.yaml:1: 'of which one': write whose; or two sentences"]),
         ("a.py", 'x = "there is no run; it is no longer a run"', []),
         ("a.py", 'x = "it is no run"', ["a.py:1: 'is no run': write is not a"]),
