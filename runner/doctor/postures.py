@@ -5,9 +5,10 @@ import numpy as np
 from runner.base.arrays import FloatArray
 from runner.base.sanitize import few
 from runner.doctor.finding import Finding
+from runner.robots.elements import number
 from runner.robots.model import RobotModel
 from runner.robots.task_space import task_basis
-from runner.robots.tree import UrdfTree, number
+from runner.robots.tree import UrdfTree
 from runner.robots.workspace import analyse
 
 _REGULAR = 1e-9  # smallest eigenvalue of a mass matrix with a diagonal of 1

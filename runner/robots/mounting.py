@@ -6,8 +6,9 @@ import numpy as np
 
 from runner.base.errors import ConfigError, nearest
 from runner.base.lazy_modules import pin
+from runner.robots.canonical import write_text
+from runner.robots.elements import add_joint, vector_text
 from runner.robots.inertials import impossible_inertia
-from runner.robots.tree import add_joint, vector_text
 from runner.schema.values import MountConfig, ToolConfig
 
 TOOL, TOOL_TIP, TOOL_MOUNT = "tool", "tool_tip", "tool_mount"
@@ -48,7 +49,7 @@ def mount(macro: str, mini: str, prefix: str, place: MountConfig) -> tuple[str, 
     pose = {"xyz": vector_text(place.translation), "rpy": vector_text(place.rotation)}
     add_joint(whole, f"{prefix}mount", "fixed", place.frame, root, **pose)
     whole.extend(element for element in mounted if element.tag in ("link", "joint"))
-    return ET.tostring(whole, encoding="unicode"), root
+    return write_text(whole), root
 
 
 def _names(robot: ET.Element, kind: str) -> list[str]:
@@ -103,7 +104,7 @@ def mount_tool(urdf: str, flange: str, tool: ToolConfig) -> str:
     ET.SubElement(point, "inertia", dict.fromkeys(("ixx", "ixy", "ixz", "iyy", "iyz", "izz"), "0"))
     add_joint(robot, TOOL_MOUNT, "fixed", flange, TOOL, xyz="0 0 0")
     add_joint(robot, "tool_end", "fixed", TOOL, TOOL_TIP, xyz=vector_text(tip))
-    return ET.tostring(robot, encoding="unicode")
+    return write_text(robot)
 
 
 def find_tool(model: "pin.Model", flange: int) -> "pin.Inertia":

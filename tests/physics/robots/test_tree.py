@@ -58,8 +58,8 @@ def test_entities_that_grow_are_refused_before_they_do(read):
 
 @pytest.mark.parametrize("head", ['<robot xmlns:xacro="http://www.ros.org/wiki/xacro" name="x">', '<robot name="x">'])
 def test_xacro_is_no_urdf(read, head):
-    with pytest.raises(ConfigError, match=r"[Mm]ake a URDF of it first"):
-        read(f'{head}<xacro:property name="r" value="1"/>{LINKS}</robot>')
+    with pytest.raises(ConfigError, match=r"make a URDF of it first: xacro arm.urdf > arm_made.urdf \(pip has xacro\)"):
+        read(f'{head}<xacro:property name="r" value="1"/><xacro:arm/>{LINKS}</robot>')
 
 
 def test_a_folder_cannot_be_read(tmp_path):
