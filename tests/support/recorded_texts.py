@@ -55,7 +55,7 @@ def settle(was: Sequence[str], now: Sequence[str]) -> list[str]:
 
 
 def changes(name: str, was: Sequence[str], now: Sequence[str]) -> str:
-    """Return how lines differ from the recorded ones, with the numbers of the lines; an empty string if they agree."""
+    """Return the differences of lines from the recorded ones, with line numbers; an empty string if they agree."""
     told = [*unified_diff(was, now, f"{name} as recorded", f"{name} now", n=1, lineterm="")]
     rest = len(told) - _MOST_SHOWN
     shown = [*told[:_MOST_SHOWN], f"... and {rest} more lines"] if rest > 0 else told

@@ -23,7 +23,7 @@ def pages():
 
 
 def missing(law, pages):
-    """Return what a law lacks, with the place where it belongs."""
+    """Return sentences about the places in which a law is missing."""
     own = {option.partition("=")[0] for option in OWN_OPTIONS.get(law.name, ())}
     others = law.keys - JointLawConfig.model_fields.keys() - {"kind"} if law.name in JOINT_LAWS else set()
     row = f"\n| `{law.name}`"
