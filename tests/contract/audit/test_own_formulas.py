@@ -80,7 +80,7 @@ def test_every_quantity_names_its_elements(mini):
         ("elements: {J_11: s4}", r"own.yaml, J_11, position 1: no name 's4' \(did you mean s3\?\)"),
         ("elements: {J_11: (c1}", "own.yaml, J_11, position 1: .*'\\(' was never closed"),
         ("elements: {J_11: q1.real}", "position 1: is not arithmetic"),
-        ("elements: {J_11: exec(q1)}", "no function that can be called"),
+        ("elements: {J_11: exec(q1)}", "not a function that can be called"),
         ("elements: {J_11: 1/(q1 - q1)}", "division by zero at sample 1 \\(q1 = "),
         ("elements: {J_11: [1]}", r"elements.J_11: is \[1\]; allowed: an expression or a number"),
         ("elements: {J_11: yes}", "elements.J_11: is True; allowed"),

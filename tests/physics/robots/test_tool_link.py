@@ -100,5 +100,5 @@ def test_a_run_with_a_tool_whose_inertia_no_body_has_is_refused(cli, tmp_path, p
 
 
 def test_two_tools_are_refused(bare):
-    with pytest.raises(ConfigError, match=r"robot\.tool: the URDF has a link 'tool'"):
+    with pytest.raises(ConfigError, match=r"robot\.tool: the URDF already has a link 'tool'"):
         mount_tool(mount_tool(bare.urdf, "flange", TOOL), "flange", TOOL)
