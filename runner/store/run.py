@@ -261,7 +261,7 @@ def open_run(folder: Path) -> Run:
         raise StoreError(f"no folder {folder}")
     if not (folder / "metrics.json").exists():
         found = {"run": "a run that did not finish", "sweep": "a sweep, not a single run"}
-        what = found.get("sweep" if kind_of(folder) == "tuning" else kind_of(folder) or "", "no stored run")
+        what = found.get("sweep" if kind_of(folder) == "tuning" else kind_of(folder) or "", "not a stored run")
         raise StoreError(
             f"{folder} is {what}: it has no metrics.json; `runner OVERRIDES` simulates a run and prints its folder"
         )
