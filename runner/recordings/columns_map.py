@@ -144,7 +144,7 @@ class ColumnsMap(StrictModel):
         columns: What each column holds, by its name; columns that are not named are not read.
         torque: held if a torque acts from its row to the next one, as a controller commands it: it is centred, half a
             row later; instant if it was measured at the time of its row.
-        topic: Of a ROS bag: the topic of its joint states; None where it has one alone.
+        topic: Of a ROS bag: the topic of its joint states; None if it has only one.
         episode: Of a LeRobot data set: the episode; None for its longest.
     """
 
