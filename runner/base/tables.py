@@ -27,7 +27,7 @@ MISSING = ("", "nan", "na", "null", "none", "-nan", "nan(ind)", "-nan(ind)")
 
 _COMMENTS = ("#", "%", "//")
 _HEAD = 200  # lines, all but the last two may be comments
-_SAMPLE = 50  # rows that tell whether a column has numbers
+_SAMPLE = 50  # rows from which columns of numbers are found
 _MOST_TOLD = 5  # problems of one file
 
 
