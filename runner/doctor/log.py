@@ -27,6 +27,9 @@ _SLOWEST, _FASTEST = 2.0, 20_000.0  # Hz, of a log's rows
 _EPOCHS = (("ns", 1e17), ("us", 1e14), ("ms", 1e11), ("s", 1e8))  # the least that a time since 1970 is, in each unit
 _ALIKE = 0.1  # relative error of a ratio of speeds that tells a unit
 _BEYOND = 0.05  # of a joint's range
+ONLY_COMMANDS = "commanded, the log has no measured positions"
+"""Reason of positions that are the commanded ones."""
+
 _COUNTS = 4096.0  # of a turn of the motors that LeRobot calibrates
 
 
@@ -266,7 +269,8 @@ def _meanings(table: Table, names: Sequence[Named], model: RobotModel, period: f
         if best:
             chosen[kind] = best, _joints_of(path, [one.label for one in best], joints)
     if "position" not in chosen and "reference" in chosen:
-        chosen["position"] = chosen.pop("reference")
+        commands, of_label = chosen.pop("reference")
+        chosen["position"] = [replace(one, reason=f"{one.reason}; {ONLY_COMMANDS}") for one in commands], of_label
     if "torque" in chosen and len(chosen["torque"][1]) == len(joints):
         chosen.pop("current", None)  # the torque is known without a constant
     for kind, (group, of) in chosen.items():

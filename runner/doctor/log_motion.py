@@ -18,6 +18,7 @@ _STEP = 0.01  # s between rows, at least
 _REST = 0.02  # of the largest speed: what is slower at an end is at rest
 _LEAD = 0.5  # s, in which a log that begins or ends in motion comes from rest or goes to it
 _MARGIN = 1e-3  # of a joint's range, kept from its limits
+_MOST = 40_000  # rows that are looked at
 _LOWER = 0.7  # factor of the cut-off, if speeds exceed the limits
 _LOWEST = 1.0  # Hz
 
@@ -48,9 +49,10 @@ def make_motion(model: RobotModel, recording: Recording) -> LogMotion | None:
         return None
     q = np.column_stack([command for command in commands if command is not None]) if commanded else measured
     assert q is not None  # noqa: S101 - one of both is there
-    period = max(recording.period, recording.duration / 200_000)
-    times = np.minimum(period * np.arange(int(recording.duration / period + 1e-6) + 1), recording.t[-1])
-    exact = evenly(recording.t, q, times)
+    every = max(1, len(recording.t) // _MOST)
+    period = every * recording.period
+    times = np.minimum(period * np.arange(int(recording.duration / period + 1e-6) + 1), recording.t[::every][-1])
+    exact = evenly(recording.t[::every], q[::every], times)
     step = max(
         _STEP, period, (recording.duration + 2.0 * _LEAD) * (model.nq + 1) / (TABLE_NUMBERS.most - 10 * model.nq)
     )

@@ -7,7 +7,7 @@ import numpy as np
 from runner.base.arrays import FloatArray
 from runner.base.quantities import quantity
 from runner.base.sanitize import few, one_line
-from runner.doctor.log import LogExamination, Meaning
+from runner.doctor.log import ONLY_COMMANDS, LogExamination, Meaning
 from runner.schema.units import WRITTEN
 
 _MOST_ROWS = 20_000  # that tell a resolution
@@ -36,7 +36,8 @@ def log_lines(found: LogExamination) -> Iterator[str]:
     for finding in found.findings:
         yield one_line(str(finding))
     if found.motion is not None:
-        what = "commanded" if found.motion.commanded else "measured"
+        commanded = found.motion.commanded or any(ONLY_COMMANDS in one.reason for one in found.meanings)
+        what = "commanded" if commanded else "measured"
         yield f"motion  the {what} positions of the log"
 
 

@@ -26,6 +26,7 @@ from runner.recordings.recording import Recording
 from runner.recordings.smoothing import cutoff, derivative, evenly, low_pass
 from runner.robots.model import RobotModel
 
+_MOST = 20_000  # rows that are smoothed
 _ROWS = 300  # at which the equations are evaluated
 _CLEARLY = 0.5  # of the sum of logarithms: another meaning explains 40 % more
 _LEAST = {"torque": 0.15, "tip": 0.03, "reference": 0.1}  # r above which a meaning is doubted at all
@@ -151,9 +152,10 @@ def _too_fast(model: RobotModel, recording: Recording, q: FloatArray) -> Iterato
 
 
 def _motion(recording: Recording, joints: Sequence[str], q: FloatArray) -> _Motion:
-    period = max(recording.period, recording.duration / 20_000)
-    times = np.minimum(period * np.arange(int(recording.duration / period + 1e-6) + 1), recording.t[-1])
-    smooth = low_pass(evenly(recording.t, q, times), period, cutoff(period))
+    every = max(1, len(recording.t) // _MOST)
+    period, t = every * recording.period, recording.t[::every]
+    times = np.minimum(period * np.arange(int(t[-1] / period + 1e-6) + 1), t[-1])
+    smooth = low_pass(evenly(t, q[::every], times), period, cutoff(period))
     dq = derivative(smooth, period)
     edge = min(len(times) // 10, round(0.5 / period))
     rows = np.unique(np.linspace(edge, len(times) - 1 - edge, min(_ROWS, len(times) - 2 * edge)).astype(int))

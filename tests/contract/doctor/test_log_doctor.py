@@ -124,6 +124,11 @@ def test_states_of_a_controller_have_its_commands(tmp_path, arm, signals):
     assert found.table.columns["elbow_joint.feedback.position"] == pytest.approx(signals["q"][:, 2])
 
 
+def test_a_log_of_commands_is_called_one(cli, tmp_path, signals):
+    path = csv(tmp_path, made.frame(signals, {key: made.RTDE[key] for key in ("t", "command")}))
+    assert "motion  the commanded positions of the log" in cli("doctor", path, "--robot", "ur5e").out
+
+
 def test_a_split_bag_is_read_in_order(tmp_path, arm, signals):
     pytest.importorskip("rosbags", reason="writes the bags")
     rows = made.ros_messages(signals, arm.joint_names)
