@@ -27,6 +27,7 @@ from runner.base.sanitize import quoted
 from runner.config.compose.composition_errors import COMPOSITION_ERRORS, explain
 from runner.config.compose.files import groups, state_of, user_overrides
 from runner.config.compose.overrides import force, prepare
+from runner.config.compose.shortcuts import take_shortcuts
 from runner.config.compose.sources import VERSION_BASE, checked_sources
 from runner.plugins.discovery import in_use
 
@@ -50,6 +51,7 @@ class Composer:
     """
 
     def __init__(self, config_dirs: Sequence[Path] = (), root: str = "config") -> None:
+        take_shortcuts()
         self.config_dirs, self._root = tuple(folder.resolve() for folder in config_dirs), root
 
     @property
