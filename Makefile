@@ -8,8 +8,8 @@ ANY_VERSION := $(if $(filter file,$(origin PYTHON)),--any-version)
 WORKERS ?= 2
 TESTS := $(BIN)/python -m pytest -n $(WORKERS) --dist worksteal
 
-.PHONY: install reproduce test test-pages test-study test-slow test-busy record test-lowest test-next test-wheel mutants coverage-map lint types docs
-.PHONY: pins release-notes bench checks clean
+.PHONY: install reproduce test test-changed test-pages test-study test-slow test-busy record test-lowest test-next test-wheel
+.PHONY: mutants coverage-map lint types docs pins release-notes bench checks clean
 
 install:
 	@$(PYTHON) .ci/install.py $(ANY_VERSION)
@@ -19,6 +19,10 @@ reproduce: install
 
 test: install
 	$(TESTS)
+
+# The tests that a change since the commit BASE can affect, without one since the last commit; by `make coverage-map`.
+test-changed: install
+	$(BIN)/python -m tools.changed_tests $(BASE)
 
 # The README and the pages of docs/, followed command by command in a shell, the scripts that they show, and the built site.
 test-pages: install
@@ -44,7 +48,7 @@ test-busy: install
 mutants: install
 	$(BIN)/python -m tools.mutants $(if $(SAMPLE),--sample $(SAMPLE)) $(if $(SEED),--seed $(SEED))
 
-# Which tests run which lines, for `make mutants`, in .cache.
+# Which tests run which lines and read which files, for `make mutants` and `make test-changed`, in .cache.
 coverage-map: install
 	$(BIN)/python -m tools.mutants --record --workers $(WORKERS)
 
