@@ -110,8 +110,10 @@ def test_owners_of_what_cannot_be_parsed_and_of_nothing():
 
 
 def test_what_is_left_out_is_said(known):
-    first, left, all_tests = report(known, {LAW_PY: 0, "pyproject.toml": 0}, {TESTS[1], TESTS[2]}, {"test_x.py"}, [])
-    assert first.startswith("2 changed files: 2 of 6 tests, 3 of 15 s of CPU time, and all of 1 test files")
+    changed, chosen = {LAW_PY: 0, "pyproject.toml": 0}, {TESTS[1], TESTS[2]}
+    first, left, unknown, all_tests = report(known, changed, chosen, {"test_x.py"}, ["test_new.py"])
+    assert first == "2 changed files: 2 of 6 tests, 3 of 15 s of CPU time, and all of 1 changed test files"
+    assert unknown == "left out: 1 test files that are not in the map, test_new.py ...: make coverage-map"
     assert left.startswith("left out: 4 tests that run no changed function")
     assert all_tests.endswith("what pyproject.toml can affect, which is all tests: make test")
 
