@@ -25,7 +25,7 @@ READING = {
 """Names and attributes that read a file, parse a string, ask the environment, start a program or connect to one."""
 
 
-_MAY_READ = re.compile(rf"\b({'|'.join({name.rpartition('.')[2] for name in READING} | {'open'})})\b")
+_MAY_READ = re.compile(rf"\b({'|'.join(map(re.escape, sorted(READING | {'open'})))})\b")
 
 
 def reads(node):
