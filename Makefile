@@ -36,9 +36,13 @@ test-study: install
 test-slow: install
 	$(TESTS) -m slow
 
-# What chapters, reports and drawings say, kept anew in tests/recorded where it has changed.
+# All committed files that are made from the sources, where they have changed: pages of docs/, and chapters, reports and
+# drawings as text in tests/recorded. Not the recorded runs, which CONTRIBUTING.md describes.
 record: install
+	$(BIN)/python -m tools.docs.reference
+	$(BIN)/python -m tools.docs.architecture
 	$(BIN)/python -m pytest --record tests/contract -k "recorded or each_condition_can_fail"
+	@git status --short docs tests/recorded
 
 # The tests in random order beside four busy loops, with a home folder that is empty and read-only.
 test-busy: install

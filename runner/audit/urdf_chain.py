@@ -8,7 +8,7 @@ import numpy as np
 
 from runner.audit.derivations import derivative, rotation, turn
 from runner.base.arrays import FloatArray
-from runner.robots.tree import end_of
+from runner.robots.elements import end_of
 
 
 @dataclass(frozen=True)

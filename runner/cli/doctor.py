@@ -39,7 +39,6 @@ def run(options: Namespace) -> int:
         options.parser.error("--format needs --output DIR")
     if not options.file.is_file():
         raise RunnerError(f"{options.file}: no such file. Allowed: a URDF or an MJCF.")
-    from runner.doctor.config_folder import write_folder
     from runner.doctor.examination import examine
 
     packages = [*options.package_path, *filter(None, os.environ.get("ROS_PACKAGE_PATH", "").split(os.pathsep))]
@@ -55,6 +54,8 @@ def run(options: Namespace) -> int:
 
         write_report(doctor_document(found), folder, ("html",))
     if folder is not None and "config" in formats:
+        from runner.doctor.config_folder import write_folder  # imports the models of all config groups
+
         write_folder(found, folder)
         print(shlex.join(["runner", "--config-dir", str(folder), f"robot={found.name}"]))
     if folder is not None:

@@ -37,7 +37,7 @@ _PART = "sweep.part"
 _OF_SWEEPS = [*(f"sweep.{name}" for name in ("trace", "retry", "on_failure", "attempts", "time_limit")), _PART]
 _NAMES = (("robot", "name"), ("controller", "kind"), ("trajectory", "kind"))
 _FAILURES_SHOWN = 20
-_MOST_RANKED = 200  # cells; to read so many takes half a second
+_MOST_RANKED = 200  # cells; to read these takes half a second
 
 # The part of conf/config.yaml about Hydra itself, which does not read that file for its own help.
 _WITHOUT_OURS = (

@@ -15,12 +15,13 @@ from runner.base.paths import conf_dir
 from runner.config.robot import ArmConfig, RobotConfig, StageConfig
 from runner.plants.friction_law import joint_friction
 from runner.robots.description import find_file, find_urdf, mjcf_of, read_arm, read_urdf, with_payloads
+from runner.robots.elements import limit_of
 from runner.robots.inertials import Payload, armature_file, set_file
 from runner.robots.joint_dynamics import dynamics_of
 from runner.robots.model import RobotModel
 from runner.robots.mounting import TOOL_TIP, mount, mount_tool
 from runner.robots.robot import Robot, Stage
-from runner.robots.tree import check_tip, is_mjcf, limit_of, tree_of
+from runner.robots.tree import check_tip, is_mjcf, tree_of
 from runner.schema.values import MountConfig, expand
 from runner.sensing.force_torque import ForceTorqueConfig
 

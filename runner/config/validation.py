@@ -21,6 +21,7 @@ from runner.config.cross_checks import (
 )
 from runner.config.dependent_keys import check_dependent_keys
 from runner.config.desired_motion import check_path, check_points, check_repeats, start_posture
+from runner.config.engine_check import check_engine
 from runner.config.flexibility import check_flexible_joints, check_flexible_links
 from runner.config.groups import read_groups
 from runner.config.input_shaper import shape
@@ -72,6 +73,7 @@ def validate(composed: Composed) -> RunConfig:
     problems.recall(check_points, arm, groups.get("trajectory"))
     problems.recall(_check_mass, arm, plant)
     problems.report()
+    problems.recall(check_engine, outline, plant)
     loaded = problems.recall(build_loaded, *made_of)
     built = _build(groups, require(arm), require(steps), problems)
     config = RunConfig(

@@ -6,13 +6,18 @@ import xml.etree.ElementTree as ET
 from collections.abc import Collection, Iterator, Sequence
 from pathlib import Path
 
+import numpy as np
+
 from runner.base.sanitize import few, quoted
 from runner.doctor.finding import Finding
-from runner.robots.inertials import fix_inertia, impossible_inertia, make_massless, principal_moments
-from runner.robots.joint_dynamics import hold
-from runner.robots.tree import TENSOR, UrdfTree, absurd_inertial, moves, number, wrong_places
+from runner.robots.elements import NO_LIMIT, TENSOR, absurd_inertial, moves, number, wrong_places
+from runner.robots.inertials import fix_inertia, impossible_inertia, make_massless, place_of, principal_moments
+from runner.robots.joint_dynamics import hold, rest_position
+from runner.robots.tree import UrdfTree
 
-_NO_LIMIT = "1e6"  # what the runner takes for none
+_NONE = repr(NO_LIMIT)
+_DENSEST = 2e4  # kg/m^3, of metals
+_SMALLEST_PART = 0.3  # of the lengths of all links: the least size of a link for its density
 
 
 def check_joints(tree: UrdfTree, tip: str) -> list[Finding]:
@@ -21,20 +26,26 @@ def check_joints(tree: UrdfTree, tip: str) -> list[Finding]:
     Joints that move and do not lie between base and tip are held: the runner takes serial arms.
     """
     way, findings = tree.way(tip), []
-    for name, joint in tree.joints.items():
-        if moves(joint):
-            findings += _check_joint(tree, name) if name in way else [_hold(tree, name, way)]
+    moving = [name for name, joint in tree.joints.items() if moves(joint)]
+    held = {name: rest_position(tree, name) for name in moving if name not in way}  # before any of them is fixed
+    for name in moving:
+        findings += [_hold(tree, name, held[name], way)] if name in held else _check_joint(tree, name)
     return findings
 
 
-def _hold(tree: UrdfTree, name: str, way: Collection[str]) -> Finding:
+def _hold(tree: UrdfTree, name: str, held: float, way: Collection[str]) -> Finding:
     joint, tie = tree.joints[name], tree.ties.get(name)
     mimic, unit = joint.find("mimic"), "m" if joint.get("type") == "prismatic" else "rad"
     text = "moves, but not the tip" + (f", and {tie}" if tie else "")
     if mimic is not None and mimic.get("joint") in way:
         text += ", which moves the tip: its links no longer move with that"
-    held = hold(tree, name)
-    where = ", as the keyframe 'home' has it" if name in tree.home else ", its limit nearest to zero" if held else ""
+    hold(tree, name, held)
+    where = (
+        ", as the keyframe 'home' has it" if name in tree.home
+        else "" if not held
+        else ", as it mimics" if mimic is not None
+        else ", its limit nearest to zero"
+    )  # fmt: skip
     return Finding("fixed", f"joint '{name}'", text, f"now held at {held:.6g} {unit}{where}")
 
 
@@ -51,8 +62,8 @@ def _check_joint(tree: UrdfTree, name: str) -> list[Finding]:
         limit = ET.SubElement(joint, "limit")
     if kind == "continuous":
         joint.set("type", "revolute")
-        limit.attrib.update(lower=f"-{_NO_LIMIT}", upper=_NO_LIMIT)
-        findings.append(Finding("fixed", place, "continuous", f"now revolute up to {_NO_LIMIT} rad: without limits"))
+        limit.attrib.update(lower=f"-{_NONE}", upper=_NONE)
+        findings.append(Finding("fixed", place, "continuous", "now revolute up to 1e6 rad: without limits"))
     findings += _check_positions(place, joint, limit)
     return findings + [finding for key in ("effort", "velocity") for finding in _check_limit(place, limit, key)]
 
@@ -64,20 +75,18 @@ def _check_positions(place: str, joint: ET.Element, limit: ET.Element) -> list[F
     said = "no position limits" if math.isnan(lower) or math.isnan(upper) else f"limits from {lower:g} to {upper:g}"
     if joint.get("type") == "prismatic":
         return [Finding("refused", place, f"it slides, with {said}", "give lower and upper, in m")]
-    limit.attrib.update(lower=f"-{_NO_LIMIT}", upper=_NO_LIMIT)
-    return [Finding("fixed", place, said, f"now {_NO_LIMIT} rad to both sides: without limits")]
+    limit.attrib.update(lower=f"-{_NONE}", upper=_NONE)
+    return [Finding("fixed", place, said, "now 1e6 rad to both sides: without limits")]
 
 
 def _check_limit(place: str, limit: ET.Element, key: str) -> list[Finding]:
     value = number(limit, key)
     if value > 0.0:
         return []
-    limit.set(key, _NO_LIMIT)
+    limit.set(key, _NONE)
     if math.isnan(value):
         return [Finding("note", place, f"no {key} limit", "give that of the data sheet, if it matters")]
-    return [
-        Finding("fixed", place, f"{key} limit {value:g}, at which nothing moves", f"now {_NO_LIMIT}: without limit")
-    ]
+    return [Finding("fixed", place, f"{key} limit {value:g}, at which nothing moves", "now 1e6: without limit")]
 
 
 def check_links(tree: UrdfTree) -> list[Finding]:
@@ -123,6 +132,31 @@ def _complete(place: str, link: ET.Element) -> list[Finding]:
     if number(link.find("inertial/mass"), "value") == 0.0 and len(missing) == len(TENSOR):
         return []
     return [Finding("fixed", place, f"no inertia {', '.join(missing)}", "now 0")]
+
+
+def check_units(tree: UrdfTree) -> list[Finding]:
+    """Return links whose inertia or mass seems to be in other units than kg m^2 and kg."""
+    places = {name: float(np.linalg.norm(place_of(joint).translation)) for name, joint in tree.joints.items()}
+    whole = sum(places.values())
+    findings = []
+    for name, link in tree.links.items():
+        mass = number(link.find("inertial/mass"), "value")
+        inertia = link.find("inertial/inertia")
+        given = [number(inertia, key) for key in TENSOR if inertia is not None and inertia.get(key) is not None]
+        readable = 0.0 < mass < math.inf and 0.0 < whole < math.inf and all(map(math.isfinite, given))
+        if name == tree.root or not readable:
+            continue
+        ends = [places[joint] for joint in tree.borne.get(name, ())]
+        centre = float(np.linalg.norm(place_of(link.find("inertial")).translation))
+        size = max([centre, *ends])
+        gyration = math.sqrt(max(float(principal_moments(link)[2]), 0.0) / mass)
+        if gyration > whole:
+            text = f"a radius of gyration of {gyration:.2g} m on a link of {size:.2g} m"
+            findings.append(Finding("note", f"link '{name}'", text, "kg mm^2? Divide the inertia by 1e6"))
+        if mass > _DENSEST * max(size, _SMALLEST_PART * whole) ** 3:
+            text = f"a mass of {mass:g} kg on a link of {size:.2g} m, denser than metals"
+            findings.append(Finding("note", f"link '{name}'", text, "g? Divide the mass by 1000"))
+    return findings
 
 
 def check_placements(tree: UrdfTree) -> list[Finding]:

@@ -3,7 +3,7 @@
 import copy
 import re
 import xml.etree.ElementTree as ET
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -12,7 +12,7 @@ import numpy as np
 from runner.base.errors import ConfigError, RunnerError
 from runner.base.sanitize import few
 from runner.config.compose.files import group_options
-from runner.doctor.bodies import check_joints, check_links, check_meshes, check_placements
+from runner.doctor.bodies import check_joints, check_links, check_meshes, check_placements, check_units
 from runner.doctor.engines import compare_engines
 from runner.doctor.finding import Finding, together
 from runner.doctor.postures import (
@@ -24,7 +24,10 @@ from runner.doctor.postures import (
 )
 from runner.doctor.starting_point import StartingPoint, judge_home, propose
 from runner.doctor.tip import choose_tip, name_tips
-from runner.robots.description import drop_shapes, read_arm
+from runner.robots.canonical import write_text
+from runner.robots.description import read_arm
+from runner.robots.elements import TENSOR, number
+from runner.robots.inertials import impossible_inertia
 from runner.robots.joint_dynamics import FileDynamics, by_value, dynamics_of
 from runner.robots.mjcf import Mjcf, read_mjcf
 from runner.robots.model import STANDARD_GRAVITY, RobotModel
@@ -142,21 +145,54 @@ def examine(
     mjcf = read_mjcf(path) if is_mjcf(path) else None
     original = read_arm(path)
     name, named = choose_name(path, original.robot.get("name", ""), wanted_name)
-    tip = choose_tip(original, wanted_tip)
     tree = copy.deepcopy(original)
+    try:
+        tip = choose_tip(original, wanted_tip)
+    except RunnerError as error:
+        others = [str(each) for each in (*check_placements(tree), *check_links(tree)) if each.grade == "refused"]
+        raise ConfigError([str(error), *others]) if others else error from None
     findings = [named, name_tips(original, tip)]
     findings += [Finding("note", "names", few(original.renamed))] if original.renamed else []
-    findings += [*check_placements(tree), *check_meshes(tree, path, packages), *check_links(tree)]
-    findings += [*check_joints(tree, tip), *([] if mjcf is None else _left_out(mjcf))]
-    drop_shapes(tree.links)
-    ET.indent(tree.robot)
-    urdf = ET.tostring(tree.robot, encoding="unicode")
+    findings += [Finding("fixed", *change) for change in original.changes]
+    findings += [*check_placements(tree), *check_meshes(tree, path, packages)]
+    findings += [] if _refused(findings) else check_units(tree)
+    impossible = {name: dict(part.attrib) for name, part in _impossible_inertias(tree).items()}
+    findings += check_links(tree)
+    findings += [*check_joints(tree, tip), *_left_out(tree, mjcf)]
+    urdf = write_text(tree.robot)
     arm = None if _refused(findings) else _take(tree, path.name, urdf, tip, findings)
+    if arm is not None and impossible:
+        findings.append(_describe_mend(tree, impossible, arm.model))
     return Examination(name, path, mjcf, tip, together(findings), urdf, None if _refused(findings) else arm)
 
 
 def _refused(findings: Sequence[Finding]) -> bool:
     return any(finding.grade == "refused" for finding in findings)
+
+
+def _impossible_inertias(tree: UrdfTree) -> dict[str, ET.Element]:
+    """Return the inertias that no rigid body has, by link."""
+    inertias = {name: link.find("inertial/inertia") for name, link in tree.links.items()}
+    complete = {
+        name: inertia
+        for name, inertia in inertias.items()
+        if inertia is not None and np.isfinite([number(inertia, key) for key in TENSOR]).all()
+    }
+    return {name: inertia for name, inertia in complete.items() if impossible_inertia(tree.links[name])}
+
+
+def _describe_mend(tree: UrdfTree, impossible: Mapping[str, Mapping[str, str]], model: RobotModel) -> Finding:
+    """Return the effect of corrected inertias on the mass matrix, in the middle of the joint ranges."""
+    before = copy.deepcopy(tree)
+    for name, attributes in impossible.items():
+        inertia = before.links[name].find("inertial/inertia")
+        if inertia is not None:
+            inertia.attrib.update(attributes)
+    q = model.usual_range.mean(axis=0)
+    M, written = model.mass_matrix(q), RobotModel(write_text(before.robot), model.tip_name).mass_matrix(q)
+    diagonal = np.sqrt(np.maximum(np.diagonal(M), 1e-300))
+    change = float(np.abs((M - written) / np.outer(diagonal, diagonal)).max())
+    return Finding("note", "mass matrix", f"the corrected inertias change it by up to {100.0 * change:.2g} %")
 
 
 def _take(tree: UrdfTree, source: str, urdf: str, tip: str, findings: list[Finding]) -> Arm | None:
@@ -171,7 +207,8 @@ def _take(tree: UrdfTree, source: str, urdf: str, tip: str, findings: list[Findi
         return None
     generator, (lower, upper) = np.random.default_rng(0), model.usual_range
     postures = generator.uniform(lower, upper, (_POSTURES, model.nq))
-    findings += [*check_tasks(model), *describe_singular(model, postures)]
+    findings += check_tasks(model)
+    findings += [] if _refused(findings) else describe_singular(model, postures)
     if _refused(findings):
         return None
     massless = check_mass_matrix(tree, model, postures)
@@ -183,10 +220,18 @@ def _take(tree: UrdfTree, source: str, urdf: str, tip: str, findings: list[Findi
     return Arm(model, propose(model, postures, home), not massless, dynamics)
 
 
-def _left_out(mjcf: Mjcf) -> list[Finding]:
-    """Return the elements of an MJCF other than bodies, joints and sites."""
-    moves = [Finding("note", "left out of the motion", text) for text in mjcf.left_out.motion]
-    return [*moves, *(Finding("note", "left out", text) for text in mjcf.left_out.rest)]
+def _left_out(tree: UrdfTree, mjcf: Mjcf | None) -> list[Finding]:
+    """Return the properties of a file that runs leave out, and the unused parts of an MJCF.
+
+    The copy of a URDF has no such elements. Runs of an MJCF report them again.
+    """
+    if mjcf is not None:
+        moves = [Finding("note", "left out of the motion", text) for text in mjcf.left_out.motion]
+        return [*moves, *(Finding("note", "left out", text) for text in mjcf.left_out.rest)]
+    elements = tree.robot.findall("left_out")
+    for element in elements:
+        tree.robot.remove(element)
+    return [Finding("note", "left out of the motion", element.get("text", "")) for element in elements]
 
 
 def _taken(dynamics: FileDynamics, model: RobotModel) -> list[Finding]:

@@ -5,11 +5,12 @@ import re
 from runner.base.errors import RunnerError, nearest
 from runner.base.sanitize import few
 from runner.doctor.finding import Finding
-from runner.robots.tree import UrdfTree, end_of, moves
+from runner.robots.elements import end_of, moves
+from runner.robots.tree import UrdfTree
 
 _PARTS = r"(_?\d*(_?(link|frame|site|point|body))?)"
 _TIPS = (
-    rf"(.*[_/-])?(tcp|tool_?cent(er|re)(_point)?|grasp(_?target)?|grip_site|pinch){_PARTS}",
+    rf"(.*[_/-])?(tcp|(tool|gripper)_?cent(er|re)(_point)?|grasp(_?target)?|grip_site|pinch){_PARTS}",
     rf"(.*[_/-])?(ee|eef|end_?effector|tool|tip|attachment|tool_?tip|gripper_(tool|frame|base)){_PARTS}",
     rf"(.*[_/-])?flange{_PARTS}",
     rf"(.*[_/-])?(hand|palm|gripper){_PARTS}",
@@ -17,6 +18,7 @@ _TIPS = (
 """Names of frames to which a tool or a hand belongs, the best ones first."""
 _JAW = re.compile(r"jaw|finger|gripper|claw|pinch|grasp|thumb", re.IGNORECASE)
 _FINGERS = re.compile(r"jaw|finger|claw|thumb|grippermover", re.IGNORECASE)
+_SENSOR = re.compile(r"camera|optical|lens|imu|sensor|lidar|laser", re.IGNORECASE)
 _WRIST = re.compile(r"wrist|roll|yaw|pitch|rotat|twist", re.IGNORECASE)
 _FEWEST = 3  # joints of an arm, below its hand
 
@@ -37,7 +39,7 @@ def choose_tip(tree: UrdfTree, wanted: str | None) -> str:
             raise RunnerError(f"--tip: no joint moves the link '{wanted}'; choose one of {few(_offered(tree))}")
         return wanted
     if not any(map(moves, tree.joints.values())):
-        raise RunnerError(f"{tree.robot.get('name')} has no joint that moves: it is no arm")
+        raise RunnerError(f"{tree.robot.get('name')} has no joint that moves: it is not an arm")
     ends = _ends(tree)
     if len(ends) == 1:
         return frames_at(tree, ends[0])[0]
@@ -78,7 +80,9 @@ def moving(tree: UrdfTree, link: str) -> list[str]:
 
 
 def _order(tree: UrdfTree, link: str) -> tuple[int, int]:
-    """Return the sort key of links as tips: by name, then the farthest first."""
+    """Return the sort key of links as tips: by name, cameras and sensors last, then the farthest first."""
+    if _SENSOR.search(link):
+        return len(_TIPS) + 1, -len(tree.way(link))
     named = [] if _FINGERS.search(link) else [name for name in _TIPS if re.fullmatch(name, link.lower())]
     return _TIPS.index(named[0]) if named else len(_TIPS), -len(tree.way(link))
 

@@ -224,6 +224,17 @@ class Bullet(Plant):
                 wrench += np.concatenate([force, np.cross(place, force)])
         return wrench
 
+    def joint_axes(self, q: FloatArray) -> FloatArray:
+        """Return axis and origin of each joint as Bullet has them; see RobotModel.joint_axes."""
+        self.reset(q, np.zeros_like(q))
+        found = []
+        for joint in self._joints:
+            axis = pybullet.getJointInfo(self._body, joint, physicsClientId=self._client)[13]
+            state = pybullet.getLinkState(self._body, joint, 0, 1, physicsClientId=self._client)
+            turned = pybullet.rotateVector(state[1], axis)  # it is given in the frame of the centre of mass
+            found.append([*turned, *state[4]])
+        return np.array(found)
+
     def mass_matrix(self, q: FloatArray) -> FloatArray:
         """Return Bullet's mass matrix with armature, shape (nq, nq), in kg m^2, in the model's order of joints."""
         places = np.argsort(np.argsort(self._joints))  # Bullet uses its own order of joints

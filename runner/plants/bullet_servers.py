@@ -8,6 +8,7 @@ from dataclasses import dataclass
 
 from runner.base.engine_output import caught_output, quiet_stderr
 from runner.base.errors import ConfigError
+from runner.robots.inertials import turn_to_principal_axes
 
 with quiet_stderr():  # PyBullet prints its build time
     import pybullet
@@ -85,7 +86,7 @@ class PhysicsServers:
         said: list[str] = []
         # Bullet caches URDFs by file name within a process, so each arm gets a separate file name.
         with tempfile.NamedTemporaryFile("w", suffix=".urdf") as file:
-            file.write(_in_short_lines(urdf))
+            file.write(_with_diagonal_inertias(urdf))
             file.flush()
             flags = pybullet.URDF_USE_INERTIA_FROM_FILE | pybullet.URDF_USE_SELF_COLLISION_EXCLUDE_ALL_PARENTS
             try:
@@ -98,7 +99,7 @@ class PhysicsServers:
                 said.insert(0, str(error))
         if said:
             pybullet.disconnect(client)
-            raise ConfigError(f"robot.urdf: PyBullet does not take it as it is: {'; '.join(_words(said))}")
+            raise ConfigError(f"robot.urdf: PyBullet does not accept it: {'; '.join(_words(said))}")
         return Server(client, body, urdf, used=False)
 
     def _empty(self) -> int:
@@ -114,10 +115,11 @@ SERVERS = PhysicsServers()
 """The physics servers of this process; they end with it."""
 
 
-def _in_short_lines(urdf: str) -> str:
-    """Return XML with one element a line, because Bullet breaks lines at 1,000 characters, even within a number."""
+def _with_diagonal_inertias(urdf: str) -> str:
+    """Return the URDF with inertial frames along principal axes, because Bullet turns them only to about 1e-8."""
     root = ET.fromstring(urdf)  # noqa: S314 - text from the runner, checked when it was read
-    ET.indent(root)
+    for link in root.findall("link"):
+        turn_to_principal_axes(link)
     return ET.tostring(root, encoding="unicode")
 
 

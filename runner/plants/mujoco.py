@@ -164,6 +164,13 @@ class Mujoco(Plant):
         turned = data.site(TOOL_MOUNT).xmat.reshape(3, 3)
         return -np.concatenate([turned @ data.sensor(name).data for name in (_FORCE, _MOMENT)])
 
+    def joint_axes(self, q: FloatArray) -> FloatArray:
+        """Return axis and origin of each joint as MuJoCo has them; see RobotModel.joint_axes."""
+        data = mujoco.MjData(self._model)
+        data.qpos[:] = q
+        mujoco.mj_kinematics(self._model, data)
+        return np.hstack([data.xaxis, data.xanchor])
+
     def mass_matrix(self, q: FloatArray) -> FloatArray:
         """Return MuJoCo's joint-space mass matrix, shape (nq, nq), in kg m^2."""
         data, M = mujoco.MjData(self._model), np.zeros((len(q), len(q)))
@@ -225,7 +232,7 @@ def _compiled(spec: Any) -> Any:
 
 
 def _refused(error: ValueError) -> ConfigError:
-    return ConfigError(f"robot.urdf: MuJoCo does not take it as it is: {' '.join(str(error).split())}")
+    return ConfigError(f"robot.urdf: MuJoCo does not accept it: {' '.join(str(error).split())}")
 
 
 def _is_flat(body: Any) -> bool:

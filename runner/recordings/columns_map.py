@@ -98,11 +98,11 @@ class ColumnsMap(StrictModel):
 
     Attributes:
         time: Column of the time; None if rows have an even rate.
-        rate: Rows in a second, in Hz; beside a column of time it must agree with that.
+        rate: Rows in a second, in Hz; if there is a column of time, both must agree.
         columns: What each column holds, by its name; columns that are not named are not read.
         torque: held if a torque acts from its row to the next one, as a controller commands it: it is centred, half a
             row later; instant if it was measured at the time of its row.
-        topic: Of a ROS bag: the topic of its joint states; None where it has one alone.
+        topic: Of a ROS bag: the topic of its joint states; None if it has only one.
     """
 
     time: TimeColumn | None = None

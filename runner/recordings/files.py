@@ -140,7 +140,7 @@ def read_bag_columns(path: Path, topic: str | None, wanted: Sequence[str]) -> di
 
     Args:
         path: The bag.
-        topic: The topic of the joint states; None where the bag has one alone.
+        topic: The topic of the joint states; None if the bag has only one.
         wanted: Names of the columns.
 
     Raises:

@@ -90,7 +90,7 @@ def both_metrics(
 ) -> dict[str, tuple[float | None, float | None]]:
     """Return each metric of the run and of the recording, by name, over some ticks of the run.
 
-    A metric is left out where the recording lacks a signal that it is worked out from, and where it counts changes
+    A metric is left out where the recording lacks a signal that it is computed from, and where it counts changes
     from tick to tick. The tip is the recorded one, or follows from all joints by the run's model.
 
     Args:

@@ -10,7 +10,7 @@ FIT = (
     "identification; 1: the same, 0: the mean would be as good"
 )
 ONE_LOG = (
-    "The intervals are of this recording alone: what differs between recordings, such as temperature, load and range "
+    "The intervals describe only this recording: what differs between recordings, such as temperature, load and range "
     "of motion, shows only when several are compared."
 )
 AMONG_MASSES = (

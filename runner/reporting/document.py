@@ -45,7 +45,7 @@ class Items:
 
 @dataclass(frozen=True)
 class Code:
-    """A string that is shown as it is typed, and can be copied.
+    """A string that is shown as typed, and can be copied.
 
     Attributes:
         text: The text.
@@ -347,7 +347,7 @@ class Document:
         subtitle: One line below it.
         abstract: The report in a few sentences, each line a paragraph; inline mathematics as in Text.
         sections: The chapters.
-        date: Date of the newest run behind it, ISO format, so that a report remade is the same; empty where none is.
+        date: Date of its newest run, ISO format, so that a report remade is the same; empty where none is.
         cover: The picture of the first screen.
         key_numbers: Numbers of the first screen: what each is, its value with unit, and what is to be said of it.
         shown: Number of chapters that HTML shows; it folds the others behind "All details". None shows all.

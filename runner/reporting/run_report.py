@@ -242,7 +242,7 @@ def _seeds(seeds: set[int]) -> str:
 
 
 def _yaml(value: Any) -> str:
-    """Return a value as it is given in YAML or on the command line."""
+    """Return a value as given in YAML or on the command line."""
     text = value if isinstance(value, str) else json.dumps(value, ensure_ascii=False)
     return re.sub(r"\b(\d)0{6,}\.0\b", lambda found: f"{float(found[0]):.0e}".replace("e+0", "e"), text)
 
@@ -251,7 +251,7 @@ def changed_keys(run: Run) -> dict[str, tuple[Any, Any]] | None:
     """Return the keys that differ from what the run's groups hold by themselves, each as (default, value).
 
     Returns:
-        The keys; None where the groups cannot be composed here, as those of a config folder of one's own.
+        The keys; None where the groups cannot be composed here, such as those of the user's config folder.
     """
     choices = run.provenance.get("choices", {})
     try:

@@ -18,7 +18,7 @@ _SIZE = re.compile(r'viewBox="[-\d.]+ [-\d.]+ ([\d.]+) ([\d.]+)"')
 
 
 class Code(str):
-    """Text that is code of the target language already, and is inserted as it is."""
+    """Text that is code of the target language already, and is inserted unchanged."""
 
     __slots__ = ()
 
@@ -56,7 +56,7 @@ def html_value(value: object) -> object:
 
 
 def typst_value(value: object) -> str:
-    """Return a value as Typst code: a number, true or false, or a quoted string; the output of a macro stays as it is.
+    """Return a value as Typst code: a number, true or false, or a quoted string; the output of a macro stays unchanged.
 
     Raises:
         TypeError: If the value is anything else.

@@ -10,6 +10,8 @@ from typing import TYPE_CHECKING
 
 from runner.base.errors import ConfigError, nearest
 from runner.base.paths import check_inside, robots_dir
+from runner.robots.canonical import write_text
+from runner.robots.elements import TENSOR, absurd_inertial, moves, number, wrong_limits, wrong_places
 from runner.robots.inertials import (
     Payload,
     add_payload,
@@ -20,18 +22,7 @@ from runner.robots.inertials import (
     scale_inertial,
     write_armature,
 )
-from runner.robots.tree import (
-    TENSOR,
-    UrdfTree,
-    absurd_inertial,
-    is_mjcf,
-    moves,
-    number,
-    read_tree,
-    tree_of,
-    wrong_limits,
-    wrong_places,
-)
+from runner.robots.tree import UrdfTree, is_mjcf, read_tree, tree_of
 
 if TYPE_CHECKING:
     from runner.robots.mjcf import Mjcf
@@ -95,7 +86,7 @@ def read_urdf(
     inertials: str | None = None,
     velocity_limits: Mapping[str, float] | None = None,
 ) -> str:
-    """Return the URDF of an arm with the given changes, and without meshes, which runs do not need.
+    """Return the canonical text of an arm with the given changes; see write_text.
 
     Args:
         path: File of the arm, a URDF or an MJCF.
@@ -133,8 +124,7 @@ def read_urdf(
     for name, mass in masses.items():
         scale_inertial(links[name], mass)
     write_armature(tree, armature_by_joint(tree, path, armature))
-    drop_shapes(links)
-    return ET.tostring(tree.robot, encoding="unicode")
+    return write_text(tree.robot)
 
 
 def with_payloads(urdf: str, payloads: Sequence[Payload]) -> str:
@@ -150,22 +140,7 @@ def with_payloads(urdf: str, payloads: Sequence[Payload]) -> str:
     for payload in payloads:
         if payload.mass:
             add_payload(links, payload)
-    return ET.tostring(robot, encoding="unicode")
-
-
-def drop_shapes(links: Mapping[str, ET.Element]) -> None:
-    """Remove shapes that runs do not need: meshes, whose files are not stored, and shapes without a size."""
-    for link in links.values():
-        for shape in (*link.findall("visual"), *link.findall("collision")):
-            if shape.find("geometry/mesh") is not None or _is_flat(shape):
-                link.remove(shape)
-
-
-def _is_flat(shape: ET.Element) -> bool:
-    """Return True if a shape has a size of zero or less, which MuJoCo rejects."""
-    solids = shape.findall("geometry/*")
-    words = [word for solid in solids for key in ("size", "radius", "length") for word in solid.get(key, "").split()]
-    return any(number(ET.Element("size", value=word), "value") <= 0.0 for word in words)
+    return write_text(robot)
 
 
 def _check_joints(path: Path, tree: UrdfTree) -> list[str]:
@@ -175,8 +150,8 @@ def _check_joints(path: Path, tree: UrdfTree) -> list[str]:
     held = "`runner doctor FILE --tip FRAME --output DIR` holds fixed what does not move the tip"
     if beside:
         return [
-            f"robot.urdf: {path} branches: {', '.join(beside)} move beside {', '.join(sorted(chain))}; allowed: a "
-            f"serial arm; {held}"
+            f"robot.urdf: {path} branches: {', '.join(beside)} move in addition to {', '.join(sorted(chain))}; "
+            f"allowed: a serial arm; {held}"
         ]
     tied = [
         f"robot.urdf: joint '{name}' in {path} {tree.ties[name]}, and its motion would be free; take that out; {held}"

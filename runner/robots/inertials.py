@@ -13,10 +13,11 @@ from pydantic import Field, NonNegativeFloat, TypeAdapter, ValidationError
 
 from runner.base.bounded_yaml import STORED, YamlError, read_yaml
 from runner.base.errors import ConfigError, nearest
-from runner.base.lazy_modules import pin
+from runner.base.lazy_modules import eigen, pin
 from runner.base.limits import ExcessError, read_text
 from runner.base.sanitize import quoted
-from runner.robots.tree import TENSOR, UrdfTree, vector_text
+from runner.robots.elements import TENSOR, vector_text
+from runner.robots.tree import UrdfTree
 from runner.schema.model import StrictModel
 from runner.schema.values import expand
 
@@ -145,7 +146,7 @@ def add_payload(links: Mapping[str, ET.Element], payload: Payload) -> None:
     """
     if payload.link not in links:
         raise ConfigError(
-            f"robot.payload: the tip frame '{payload.link}' is no link{nearest(payload.link, links)}; a payload "
+            f"robot.payload: the tip frame '{payload.link}' is not a link{nearest(payload.link, links)}; a payload "
             f"needs one: add a massless link there, fixed. Links: {', '.join(links)}"
         )
     link = links[payload.link]
@@ -160,10 +161,12 @@ def impossible_inertia(link: ET.Element) -> list[str]:
     listed = ", ".join(f"{moment:.3g}" for moment in moments)
     if moments[0] < -_ROUNDING * moments[2]:
         return [f"an inertia that is not positive definite (principal moments {listed} kg m^2): no body has it"]
-    if moments[2] > (1.0 + _ROUNDING) * (moments[0] + moments[1]):
+    others = moments[0] + moments[1]
+    if moments[2] > (1.0 + _ROUNDING) * others:
+        above = f"{100.0 * (moments[2] / others - 1.0):.3g} % above" if others > 0.0 else "above"
         return [
-            f"principal moments of inertia of {listed} kg m^2: no body has one above the sum of the others, and "
-            "PyBullet would take zero for all"
+            f"principal moments of inertia of {listed} kg m^2: no body has one above the sum of the others, which the "
+            f"largest is {above}, and PyBullet would take zero for all"
         ]
     return []
 
@@ -171,6 +174,22 @@ def impossible_inertia(link: ET.Element) -> list[str]:
 def principal_moments(link: ET.Element) -> np.ndarray:
     """Return a link's principal moments of inertia about its centre of mass, shape (3,), in kg m^2, ascending."""
     return np.asarray(np.linalg.eigvalsh(_tensor(link)))
+
+
+def turn_to_principal_axes(link: ET.Element) -> None:
+    """Turn the inertial frame of a link to its principal axes: the tensor becomes diagonal, the body stays the same."""
+    inertial, inertia, tensor = link.find("inertial"), link.find("inertial/inertia"), _tensor(link)
+    if inertial is None or inertia is None or not np.any(tensor - np.diag(np.diag(tensor))):
+        return
+    principal, place = eigen.SelfAdjointEigenSolver(tensor), place_of(inertial)
+    axes = principal.eigenvectors().copy()
+    axes[:, 2] = np.cross(axes[:, 0], axes[:, 1])  # right-handed
+    for origin in inertial.findall("origin"):
+        inertial.remove(origin)
+    rpy = vector_text(pin.rpy.matrixToRpy(place.rotation @ axes))
+    inertial.insert(0, ET.Element("origin", xyz=vector_text(place.translation), rpy=rpy))
+    inertia.attrib.update(dict.fromkeys(TENSOR, "0.0"))
+    inertia.attrib.update(zip(("ixx", "iyy", "izz"), map(repr, principal.eigenvalues().tolist()), strict=True))
 
 
 def fix_inertia(link: ET.Element) -> None:

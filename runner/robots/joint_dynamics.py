@@ -9,8 +9,9 @@ import numpy as np
 from runner.base.arrays import FloatArray
 from runner.base.lazy_modules import pin
 from runner.base.sanitize import few
+from runner.robots.elements import number, vector_text, wrong_places
 from runner.robots.inertials import place_of
-from runner.robots.tree import UrdfTree, number, vector_text, wrong_places
+from runner.robots.tree import UrdfTree
 
 _LONGEST = 300  # characters of a message about omitted content
 
@@ -69,24 +70,40 @@ def by_value(values: FloatArray, names: Sequence[str]) -> str:
     return ", ".join(f"{value} ({few(named)})" for value, named in told.items())
 
 
-def hold(tree: UrdfTree, name: str) -> float:
-    """Fix a joint at its position in the file's keyframe `home`, or at 0, clipped to its limits.
+def rest_position(tree: UrdfTree, name: str, followers: tuple[str, ...] = ()) -> float:
+    """Return the position at which a joint can be fixed, in rad; m for a prismatic joint.
 
-    Returns:
-        The position, in rad; m for a prismatic joint.
+    It is the joint's position in the file's keyframe `home`, or 0, clipped to its limits. A joint that mimics another
+    one follows it.
+
+    Args:
+        tree: The arm.
+        name: Name of the joint.
+        followers: Joints that follow this one, to end a circle of them.
     """
     joint = tree.joints[name]
-    limit, position = joint.find("limit"), tree.home.get(name, 0.0)
+    mimic, limit = joint.find("mimic"), joint.find("limit")
+    leader = "" if mimic is None else mimic.get("joint", "")
+    if leader in tree.joints and leader not in (name, *followers) and name not in tree.home:
+        factor, offset = (number(mimic, key) for key in ("multiplier", "offset"))
+        led = rest_position(tree, leader, (*followers, name))
+        return (1.0 if np.isnan(factor) else factor) * led + (0.0 if np.isnan(offset) else offset)
+    position = tree.home.get(name, 0.0)
     lower, upper = number(limit, "lower"), number(limit, "upper")
     if joint.get("type") in ("revolute", "prismatic") and lower < upper:
         position = float(np.clip(position, lower, upper))
+    return position
+
+
+def hold(tree: UrdfTree, name: str, position: float) -> None:
+    """Fix a joint at a position, in rad; m for a prismatic joint."""
+    joint = tree.joints[name]
     if position and not any(wrong_places(joint)):
         _move(joint, position)
     joint.set("type", "fixed")
     for tag in ("mimic", "limit", "dynamics", "axis"):
         for element in joint.findall(tag):
             joint.remove(element)
-    return position
 
 
 def _move(joint: ET.Element, position: float) -> None:

@@ -16,6 +16,7 @@ from numpy.typing import NDArray
 from runner.base.errors import ConfigError
 from runner.base.sanitize import few
 from runner.robots.mjcf_files import asset_files, follow_includes
+from runner.robots.mjcf_motors import MotorLimits, motor_limits
 from runner.robots.mjcf_urdf import (
     HOME,
     ON_JOINTS,
@@ -31,6 +32,7 @@ from runner.robots.mjcf_urdf import (
     write_urdf,
 )
 from runner.robots.model import STANDARD_GRAVITY
+from runner.robots.tree import parse_xml
 
 _LOCK = threading.Lock()  # MuJoCo has one global warning handler
 _KEPT = 8
@@ -114,8 +116,9 @@ def _convert(path: Path) -> Mjcf:
         except (ValueError, RuntimeError, mujoco.FatalError) as error:
             raise _refused(path, error) from error
     _refuse(path, refused_model(model))
-    efforts, of_efforts = efforts_of(model)
-    lost = {**_of_gravity(spec), **dict.fromkeys(_of_motion(spec, model), "")}
+    motors = motor_limits(model, [parse_xml(text, "robot.mjcf") for text in texts])
+    efforts, of_efforts = efforts_of(model, motors)
+    lost = {**_of_gravity(spec), **dict.fromkeys((*_of_motion(spec, model), *_of_motors(model, motors)), "")}
     urdf, renamed = write_urdf(spec.modelname, model, efforts, dynamics_of(model), lost)
     warned = (f"MuJoCo's warning: {text.strip()}" for text in dict.fromkeys(said))
     rest = (*of_efforts, *renamed, *_of_rest(spec, model), *missing, *warned)
@@ -194,8 +197,8 @@ def refused_parts(spec: Any) -> Iterator[str]:
 def refused_model(model: Any) -> Iterator[str]:
     """Yield a message about each unsupported property of a compiled model, with names and a remedy."""
     if not model.njnt:
-        yield "has no joint: it is no arm"
-    yield from _joints(model, ~np.isfinite(model.qpos0), "a ref that is no finite number:", "give a number")
+        yield "has no joint: it is not an arm"
+    yield from _joints(model, ~np.isfinite(model.qpos0), "a ref that is not finite:", "give a number")
 
 
 def _of_gravity(spec: Any) -> dict[str, str]:
@@ -225,6 +228,17 @@ def _of_motion(spec: Any, model: Any) -> Iterator[str]:
             yield f"{text} of the air of {value:g} in SI units"
     if np.any(option.wind):
         yield f"wind of {', '.join(f'{value:g}' for value in option.wind)} m/s"
+
+
+def _of_motors(model: Any, motors: Mapping[int, MotorLimits]) -> Iterator[str]:
+    """Yield a message about the back-EMF of direct-current motors, which bounds the speed of their joints."""
+    speeds: dict[str, list[str]] = {}
+    for actuator, limits in motors.items():
+        value = "not given" if limits.no_load_speed is None else f"{limits.no_load_speed:.6g}"
+        speeds.setdefault(value, []).append(actuator_name(model, actuator))
+    for value, names in speeds.items():
+        unit = "its voltage is" if value == "not given" else "no-load speed of the joint in SI units"
+        yield f"back-EMF of the dc motors {few(names)} (torque_limits.no_load_speed): {unit} {value}"
 
 
 def _of_rest(spec: Any, model: Any) -> Iterator[str]:

@@ -10,8 +10,9 @@ import numpy as np
 
 from runner.base.arrays import FloatArray
 from runner.base.lazy_modules import pin
+from runner.robots.elements import add_joint, vector_text
 from runner.robots.inertials import make_massless, write_inertial
-from runner.robots.tree import add_joint, vector_text
+from runner.robots.mjcf_motors import MotorLimits
 
 HOME = "home"  # name of the keyframe that is used
 ON_JOINTS = (mujoco.mjtTrn.mjTRN_JOINT, mujoco.mjtTrn.mjTRN_JOINTINPARENT)
@@ -71,8 +72,9 @@ def write_urdf(
         place = _frame(model.site_pos, model.site_quat, site)
         _write_joint(robot, f"{link}_fixed", "fixed", bearer, link, place)
     for joint in range(model.njnt):
-        if model.joint(joint).name not in ("", joint_name(model, joint)):
-            names.told.append(f"joint '{model.joint(joint).name}' is '{joint_name(model, joint)}', beside a link")
+        name, new = model.joint(joint).name, joint_name(model, joint)
+        if name not in ("", new):
+            names.told.append(f"joint '{name}' is '{new}', as a link has the name")
     for text, gravity in left_out.items():
         ET.SubElement(robot, "left_out", text=text, gravity=gravity)
     ET.indent(robot)
@@ -98,7 +100,7 @@ class _Names:
             new += ending
         self._taken.add(new)
         if new != name:
-            self.told.append(f"site '{name}' is the link '{new}', beside another")
+            self.told.append(f"site '{name}' is the link '{new}', as another link has the name")
         return new
 
 
@@ -188,12 +190,16 @@ def home_of(spec: Any, model: Any) -> dict[str, float]:
     return {}
 
 
-def efforts_of(model: Any) -> tuple[dict[int, float], list[str]]:
+def efforts_of(model: Any, motors: Mapping[int, MotorLimits]) -> tuple[dict[int, float], list[str]]:
     """Return the effort limit of joints by index, in N m (N for prismatic joints), and messages about them.
 
-    The limit is the smallest of the joint's actuatorfrcrange and the ranges of its only actuator: the force range, and
-    for a plain motor the control range times gain and gear. If the limits of both directions differ, the smaller one
-    counts.
+    The limit is the smallest of the joint's actuatorfrcrange and the ranges of its only actuator: the force range, for
+    a plain motor the control range times gain and gear, and for a direct-current motor its stall torque. If the limits
+    of both directions differ, the smaller one counts.
+
+    Args:
+        model: MuJoCo's compiled model.
+        motors: Limits of direct-current motors by actuator; see motor_limits.
     """
     efforts: dict[int, float] = {}
     told: list[str] = []
@@ -202,6 +208,8 @@ def efforts_of(model: Any) -> tuple[dict[int, float], list[str]]:
         ranges = [model.jnt_actfrcrange[joint]] if model.jnt_actfrclimited[joint] else []
         if len(acting.get(joint, ())) == 1:
             ranges += _forces(model, acting[joint][0])
+            stall = motors.get(acting[joint][0], MotorLimits(None, None)).stall_torque
+            ranges += [] if stall is None else [np.array([-stall, stall])]
         elif joint in acting:
             told.append(f"the limits of the {len(acting[joint])} actuators of joint '{joint_name(model, joint)}'")
         for low, high in ranges:

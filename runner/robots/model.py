@@ -11,7 +11,8 @@ from runner.base.arrays import FloatArray
 from runner.base.engine_output import caught_output
 from runner.base.errors import ConfigError
 from runner.base.lazy_modules import pin
-from runner.robots.tree import NO_LIMIT, check_tip
+from runner.robots.elements import NO_LIMIT
+from runner.robots.tree import check_tip
 
 STANDARD_GRAVITY = 9.81  # m/s^2, the thesis' value (its G(q) shows 9.81 and 19.62)
 
@@ -105,6 +106,17 @@ class RobotModel:
         )
         linear: FloatArray = acceleration.linear.copy()
         return linear
+
+    def joint_axes(self, q: FloatArray) -> FloatArray:
+        """Return axis and origin of each joint in the base frame, shape (nq, 6); origins in m."""
+        pin.forwardKinematics(self.pin_model, self._data, q)
+        found = []
+        for joint, place in zip(list(self.pin_model.joints)[1:], list(self._data.oMi)[1:], strict=True):
+            own = joint.createData()
+            joint.calc(own, np.zeros(1))
+            linear, angular = np.split(np.ravel(own.S), 2)
+            found.append([*place.rotation @ (angular if angular.any() else linear), *place.translation])
+        return np.array(found)
 
     def mass_matrix(self, q: FloatArray) -> FloatArray:
         """Return the joint-space mass matrix M(q), shape (nq, nq), in kg m^2 (thesis eq. 3.11)."""
@@ -265,7 +277,7 @@ def _build(urdf: str) -> "pin.Model":
     if said:  # about a shape that Pinocchio does not support; models have no shapes
         model, said = _read(_without_shapes(urdf))
     if said:
-        raise ConfigError(f"robot.urdf: Pinocchio does not take it as it is: {' '.join(said)}")
+        raise ConfigError(f"robot.urdf: Pinocchio does not accept it: {' '.join(said)}")
     return model
 
 

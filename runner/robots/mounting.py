@@ -6,8 +6,9 @@ import numpy as np
 
 from runner.base.errors import ConfigError, nearest
 from runner.base.lazy_modules import pin
+from runner.robots.canonical import write_text
+from runner.robots.elements import add_joint, vector_text
 from runner.robots.inertials import impossible_inertia
-from runner.robots.tree import add_joint, vector_text
 from runner.schema.values import MountConfig, ToolConfig
 
 TOOL, TOOL_TIP, TOOL_MOUNT = "tool", "tool_tip", "tool_mount"
@@ -48,7 +49,7 @@ def mount(macro: str, mini: str, prefix: str, place: MountConfig) -> tuple[str, 
     pose = {"xyz": vector_text(place.translation), "rpy": vector_text(place.rotation)}
     add_joint(whole, f"{prefix}mount", "fixed", place.frame, root, **pose)
     whole.extend(element for element in mounted if element.tag in ("link", "joint"))
-    return ET.tostring(whole, encoding="unicode"), root
+    return write_text(whole), root
 
 
 def _names(robot: ET.Element, kind: str) -> list[str]:
@@ -79,9 +80,11 @@ def mount_tool(urdf: str, flange: str, tool: ToolConfig) -> str:
     robot = ET.fromstring(urdf)  # noqa: S314 - our own text, checked when it was read
     links = [link.get("name", "") for link in robot.iter("link")]
     if flange not in links:
-        raise ConfigError(f"robot.tool: the flange '{flange}' is no link to fix a tool on; links: {', '.join(links)}")
+        raise ConfigError(
+            f"robot.tool: the flange '{flange}' is not a link to fix a tool on; links: {', '.join(links)}"
+        )
     if {TOOL, TOOL_TIP} & set(links):
-        raise ConfigError(f"robot.tool: the URDF has a link '{TOOL}' or '{TOOL_TIP}' of its own; allowed: null")
+        raise ConfigError(f"robot.tool: the URDF already has a link '{TOOL}' or '{TOOL_TIP}'; allowed: null")
     body = ET.SubElement(robot, "link", name=TOOL)
     inertial = ET.SubElement(body, "inertial")
     ET.SubElement(inertial, "origin", xyz=vector_text(tool.centre_of_mass))
@@ -101,7 +104,7 @@ def mount_tool(urdf: str, flange: str, tool: ToolConfig) -> str:
     ET.SubElement(point, "inertia", dict.fromkeys(("ixx", "ixy", "ixz", "iyy", "iyz", "izz"), "0"))
     add_joint(robot, TOOL_MOUNT, "fixed", flange, TOOL, xyz="0 0 0")
     add_joint(robot, "tool_end", "fixed", TOOL, TOOL_TIP, xyz=vector_text(tip))
-    return ET.tostring(robot, encoding="unicode")
+    return write_text(robot)
 
 
 def find_tool(model: "pin.Model", flange: int) -> "pin.Inertia":

@@ -1,20 +1,21 @@
 """URDF tree of links and joints: safe XML parsing, checks of structure and of numeric values."""
 
-import math
 import xml.etree.ElementTree as ET
 from collections import Counter
-from collections.abc import Collection, Iterable, Iterator, Mapping, Sequence
-from dataclasses import dataclass, field
+from collections.abc import Collection, Mapping, Sequence
+from dataclasses import dataclass, field, replace
+from functools import cached_property
 from pathlib import Path
 
 from runner.base.errors import ConfigError, nearest
 from runner.base.limits import ARM_PARTS, XML, XML_ATTRIBUTES, XML_ELEMENTS, ExcessError, read_text
-from runner.base.sanitize import quoted
-from runner.schema.model import LARGEST, SMALLEST
+from runner.base.sanitize import few, quoted
+from runner.robots.canonical import Change, canonize
+from runner.robots.elements import end_of, moves
+from runner.robots.file_extensions import declare_prefixes, drop_definitions, read_motors
 
 _NAME = 200  # characters
 _DEPTH = 20
-_XACRO = "{http://www.ros.org/wiki/xacro}"
 
 
 @dataclass(frozen=True)
@@ -29,6 +30,7 @@ class UrdfTree:
         ties: Constrained joints with their constraints, as in "mimics 'q1'".
         home: Joint positions of the file's keyframe `home`, in rad or m; empty without this keyframe.
         renamed: Messages about joints that were renamed because a link has the same name.
+        changes: Changes of values for the canonical text; see canonize.
     """
 
     robot: ET.Element
@@ -38,17 +40,25 @@ class UrdfTree:
     ties: Mapping[str, str] = field(default_factory=dict)
     home: Mapping[str, float] = field(default_factory=dict)
     renamed: tuple[str, ...] = ()
+    changes: tuple[Change, ...] = ()
 
-    @property
+    @cached_property
     def bearers(self) -> dict[str, str]:
         """Name of the parent joint of each link except the root."""
         return {end_of(joint, "child"): name for name, joint in self.joints.items()}
 
+    @cached_property
+    def borne(self) -> dict[str, list[str]]:
+        """Names of the joints on each link that bears some, in the order of the file."""
+        found: dict[str, list[str]] = {}
+        for name, joint in self.joints.items():
+            found.setdefault(end_of(joint, "parent"), []).append(name)
+        return found
+
     @property
     def ends(self) -> list[str]:
         """Links without child joints, in the order of the file."""
-        bearing = {end_of(joint, "parent") for joint in self.joints.values()}
-        return [name for name in self.links if name not in bearing]
+        return [name for name in self.links if name not in self.borne]
 
     def way(self, link: str) -> list[str]:
         """Return the joints from the root to a link, in order."""
@@ -82,17 +92,6 @@ def check_tip(tip: str, frames: Sequence[str]) -> None:
         raise ConfigError(f"robot.tip: '{tip}' is the name of {frames.count(tip)} links and joints; rename all but one")
 
 
-def end_of(joint: ET.Element, role: str) -> str:
-    """Return the name of the link at an end of a joint; role is "parent" or "child"."""
-    element = joint.find(role)
-    return "" if element is None else element.get("link", "")
-
-
-def moves(joint: ET.Element) -> bool:
-    """Return True if the type of a joint is not fixed."""
-    return joint.get("type") != "fixed"
-
-
 def read_tree(path: Path) -> UrdfTree:
     """Read a URDF file.
 
@@ -111,15 +110,20 @@ def tree_of(urdf: str, path: Path) -> UrdfTree:
 def make_tree(robot: ET.Element, path: Path) -> UrdfTree:
     """Return the tree of links of a URDF's root element; see read_tree for the errors, whose messages contain the file.
 
-    The element is changed in place: a robot without a name gets that of its file, and a joint with the name of a link
-    is renamed, because engines look up both by name.
+    The element is changed in place: its values become canonical, a robot without a name gets that of its file, and a
+    joint with the name of a link is renamed, because engines look up both by name.
     """
+    try:
+        unused = drop_definitions(robot)
+    except ValueError:
+        made = f"{path.name.removesuffix('.xacro').removesuffix('.urdf')}{'_made' * (path.suffix == '.urdf')}.urdf"
+        command = f"xacro {path.name} > {made}"
+        raise ConfigError(
+            f"robot.urdf: {path} uses xacro; make a URDF of it first: {command} (pip has xacro)"
+        ) from None
     links = {link.get("name", ""): link for link in robot.findall("link")}
     if robot.tag != "robot" or not links:
-        raise ConfigError(f"robot.urdf: {path} is no URDF: it needs a <robot> with links")
-    if path.suffix == ".xacro" or any(element.tag.startswith(_XACRO) for element in robot.iter()):
-        made = f"{path.name.removesuffix('.xacro').removesuffix('.urdf')}{'_made' * (path.suffix == '.urdf')}.urdf"
-        raise ConfigError(f"robot.urdf: {path} holds xacro macros; make a URDF of it first: xacro {path.name} > {made}")
+        raise ConfigError(f"robot.urdf: {path} is not a URDF: it needs a <robot> with links")
     robot.set("name", robot.get("name") or path.stem)
     renamed = _rename_joints(robot, links)
     joints = {joint.get("name", ""): joint for joint in robot.findall("joint")}
@@ -140,7 +144,11 @@ def make_tree(robot: ET.Element, path: Path) -> UrdfTree:
         tree = UrdfTree(robot, links, joints, roots[0], ties, renamed=renamed)
         circling = _circling(tree)
         if not circling:
-            return tree
+            read_motors(robot, joints)
+            left_out = (
+                [Change("xacro", f"definitions that nothing uses: {few(unused)}", "now left out")] if unused else []
+            )
+            return replace(tree, changes=(*left_out, *canonize(links, joints)))
         problems.append(f"the links {', '.join(circling)} run in a circle, apart from the base '{roots[0]}'")
     raise ConfigError(f"robot.urdf: {path}: {problem}; allowed: one tree of links" for problem in problems)
 
@@ -174,12 +182,12 @@ def parse_xml(path: Path, key: str = "robot.urdf") -> ET.Element:
     """
     try:
         text = read_text(path, XML)
-        return ET.fromstring(text, parser=ET.XMLParser(target=_Builder()))  # noqa: S314 - no entities, see there
+        parser = ET.XMLParser(target=_Builder())  # noqa: S314 - no entities, see there
+        return ET.fromstring(declare_prefixes(text), parser=parser)  # noqa: S314
     except ExcessError as error:
         raise ConfigError(f"{key}: {path} {error}") from error
     except (ET.ParseError, ValueError) as error:
-        hint = "; xacro macros? Make a URDF of it first" if "unbound prefix" in str(error) else ""
-        raise ConfigError(f"{key}: {path} is no XML: {error}{hint}") from error
+        raise ConfigError(f"{key}: {path} is not XML: {error}") from error
     except OSError as error:
         raise ConfigError(f"{key}: {path} cannot be read: {error.strerror or error}") from error
 
@@ -206,7 +214,7 @@ def _rename_joints(robot: ET.Element, links: Collection[str]) -> tuple[str, ...]
             for element, key in ((joint, "name"), *((mimic, "joint") for mimic in robot.iterfind("joint/mimic"))):
                 if element.get(key) == name:
                     element.set(key, new)
-            told.append(f"joint '{name}' is '{new}', beside a link")
+            told.append(f"joint '{name}' is '{new}', as a link has the name")
     return tuple(told)
 
 
@@ -243,7 +251,7 @@ def _repeated(robot: ET.Element) -> list[str]:
 
 def _loose_ends(links: dict[str, ET.Element], joints: dict[str, ET.Element]) -> list[str]:
     return [
-        f"joint '{name}' has a {role} '{end_of(joint, role)}', which is no link{nearest(end_of(joint, role), links)}"
+        f"joint '{name}' has a {role} '{end_of(joint, role)}', which is not a link{nearest(end_of(joint, role), links)}"
         for name, joint in joints.items()
         for role in ("parent", "child")
         if end_of(joint, role) not in links
@@ -258,85 +266,3 @@ def _circling(tree: UrdfTree) -> Sequence[str]:
         hanging |= more
         grown = bool(more)
     return [name for name in tree.links if name not in hanging]
-
-
-NO_LIMIT = 1e6
-"""Smallest absolute value, in SI units, that means no limit, because URDF requires limits of joints."""
-TENSOR = ("ixx", "ixy", "ixz", "iyy", "iyz", "izz")
-
-
-def number(element: ET.Element | None, key: str) -> float:
-    """Return the number in an attribute of an element, or NaN if it is missing or not a number."""
-    try:
-        return math.nan if element is None else float(element.get(key, "nan"))
-    except ValueError:
-        return math.nan
-
-
-def vector_text(values: Iterable[float]) -> str:
-    """Return numbers as the value of an XML attribute."""
-    return " ".join(repr(float(value)) for value in values)
-
-
-def add_joint(robot: ET.Element, name: str, kind: str, parent: str, child: str, **origin: str) -> ET.Element:
-    """Add a joint between two links to a URDF; `origin` has the attributes of its origin."""
-    joint = ET.SubElement(robot, "joint", name=name, type=kind)
-    ET.SubElement(joint, "parent", link=parent)
-    ET.SubElement(joint, "child", link=child)
-    ET.SubElement(joint, "origin", origin)
-    return joint
-
-
-def limit_of(joint: ET.Element, key: str) -> float:
-    """Return a limit of a moving joint, in SI units: infinite if it means no limit, 0 if it is missing."""
-    value = number(joint.find("limit"), key)
-    return 0.0 if math.isnan(value) else value if abs(value) < NO_LIMIT else math.copysign(math.inf, value)
-
-
-def wrong_places(element: ET.Element) -> Iterator[tuple[str, str]]:
-    """Yield messages about invalid positions, rotations and axes of a link or joint, each with a remedy."""
-    for part in element.iter():
-        for key in ("xyz", "rpy") if part.tag in ("origin", "axis") else ():
-            words = part.get(key)
-            if words is not None and not _is_vector(words):
-                yield (
-                    f"<{part.tag} {key}={quoted(words)}>",
-                    f"allowed: three numbers, parted by spaces, up to {LARGEST:g}",
-                )
-            elif part.tag == "axis" and moves(element) and words and not any(map(float, words.split())):
-                yield "an axis of length 0", "give it a direction"
-
-
-def absurd_inertial(link: ET.Element) -> Iterator[str]:
-    """Yield messages about absurd masses and inertias of a link; values that are not numbers are checked elsewhere."""
-    mass = number(link.find("inertial/mass"), "value")
-    if LARGEST < mass < math.inf or 0.0 < mass < SMALLEST:
-        yield f"mass {mass:g} kg; allowed: 0, or {SMALLEST:g} to {LARGEST:g}"
-    for key in TENSOR:
-        moment = number(link.find("inertial/inertia"), key)
-        if LARGEST < abs(moment) < math.inf:
-            yield f"inertia {key} of {moment:g} kg m^2; allowed: up to {LARGEST:g}"
-
-
-def wrong_limits(joint: ET.Element) -> Iterator[str]:
-    """Yield messages about invalid limits of a moving joint; missing limits are checked elsewhere."""
-    limit = joint.find("limit")
-    if limit is None or not moves(joint):
-        return
-    for key in ("lower", "upper", "effort", "velocity"):
-        if limit.get(key) is not None and math.isnan(number(limit, key)):
-            yield f"a limit {key}={quoted(limit.get(key))}; allowed: a number"
-    lower, upper = number(limit, "lower"), number(limit, "upper")
-    if lower > upper:
-        yield f"limits from {lower:g} to {upper:g}; lower must be below upper"
-    for key in ("effort", "velocity"):
-        if number(limit, key) < 0.0:
-            yield f"{key} limit {number(limit, key):g}; allowed: 0 or more"
-
-
-def _is_vector(text: str) -> bool:
-    try:
-        values = [float(word) for word in text.split()]
-    except ValueError:
-        return False
-    return len(values) == 3 and all(abs(value) <= LARGEST for value in values)

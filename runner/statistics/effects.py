@@ -128,7 +128,7 @@ class Sample:
         return _centred(values[:, None], self._blocks)[:, 0]
 
     def _permuted(self, residual: FloatArray, count: int) -> FloatArray:
-        """Return residuals permuted within their blocks in so many ways, shape (n, count)."""
+        """Return residuals permuted within their blocks in `count` ways, shape (n, count)."""
         shuffled = np.zeros((len(residual), count))  # what a block of one value has left is zero
         for rows in self._rows:
             copies = np.repeat(residual[rows][:, :, None], count, axis=2)
@@ -181,7 +181,7 @@ MOST_VALUES = 5_000
 """More values than this are drawn from at random, so that a test takes seconds."""
 
 MOST_GROUPS = 8
-"""For interactions an axis with more values is taken in so many groups of neighbours."""
+"""For interactions an axis with more values is divided into this many groups of neighbours."""
 
 _DECADE = 10.0
 
@@ -225,8 +225,8 @@ def axis_effects(
 ) -> EffectAnalysis:
     r"""Return the effects of axes on a metric.
 
-    An effect's share is its sum of squares beyond the model without it, over the total; a main effect stands beside
-    the other main effects, an interaction beside all main effects. Tested is F,
+    An effect's share is its sum of squares beyond the model without it, over the total; a main effect is added to
+    the other main effects, an interaction to all main effects. Tested is F,
 
     $$F = \frac{(RSS_0 - RSS_1) / (p_1 - p_0)}{RSS_1 / (n - p_1)},$$
 
@@ -237,7 +237,7 @@ def axis_effects(
 
     Values of one block have something in common, such as the seed of one repetition. Both models then have a constant
     for each block as well, which is to subtract each block's mean from everything first, and residuals are permuted
-    within their block: what all cells of a repetition share is no scatter between them. An axis that has one level
+    within their block: what all cells of a repetition share is not scatter between them. An axis that has one level
     only within each block, such as the seed itself, is tested over the means of the blocks.
 
     The test assumes that without the effect residuals are exchangeable (within their block). Where their scatter

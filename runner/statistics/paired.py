@@ -15,7 +15,7 @@ EXACT_UP_TO = 200
 """Differences up to which the distribution is summed up; beyond, the normal law stands in for it."""
 
 _POWER = 0.8  # probability of showing a difference, for which pairs are counted
-_EFFICIENCY = 3.0 / math.pi  # of signed ranks, for normal differences, beside the mean
+_EFFICIENCY = 3.0 / math.pi  # of signed ranks, for normal differences, relative to the mean
 
 
 class SignedRanks:

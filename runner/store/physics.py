@@ -42,8 +42,9 @@ _TABLE = """
         computation=plants.computation decoupled flexible_config flexible_joints=plants.flexible_joints friction
         friction_law kinematic motor_limits mujoco plant=plants.plant rk4 rk4_flexible_links servo wrappers=touched
     plugins: features guard metric_units registry
-    robots: __init__=robots.__init__ description drawn inertials inverse_kinematics joint_dynamics mismatch mjcf
-        mjcf_files mjcf_urdf model mounting robot=robots.robot task_space tree vibration workspace
+    robots: __init__=robots.__init__ canonical description drawn elements file_extensions inertials
+        inverse_kinematics joint_dynamics mismatch mjcf mjcf_files mjcf_motors mjcf_urdf model mounting
+        robot=robots.robot task_space tree vibration workspace
     schema: values
     sensing: __init__=sensing.__init__ encoders endpoint=sensing.endpoint force_torque joint_torque streams velocity
         wrench

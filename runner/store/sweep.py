@@ -220,7 +220,7 @@ def open_sweep(folder: Path) -> Sweep:
     path = folder / _FILE
     if not path.exists():
         raise StoreError(
-            f"{folder} is no sweep: it has no {_FILE}; `runner -m OVERRIDES` makes one, and prints its folder"
+            f"{folder} is not a sweep: it has no {_FILE}; `runner -m OVERRIDES` makes one, and prints its folder"
         )
     content = read_json(path, _REMEDY)
     command = content.get("command", "")
@@ -252,7 +252,7 @@ def _read_jobs(path: Path, content: Mapping[str, Any]) -> tuple[Sequence[Sequenc
     jobs = content.get("jobs")
     if not (isinstance(jobs, list) and all(map(_is_job, jobs))):
         raise DamagedError(
-            f"cannot read {path}: it is no sweep's: it needs jobs with overrides and run each; {_REMEDY}"
+            f"cannot read {path}: it is not a sweep's: it needs jobs with overrides and run each; {_REMEDY}"
         )
     overrides, hashes = [tuple(job["overrides"]) for job in jobs], [job["run"] for job in jobs]
     return overrides, hashes, _rows(zip(overrides, hashes, strict=True))

@@ -172,7 +172,7 @@ def answer(pairs: Sequence[Pairs], names: Sequence[str], wanted: Sequence[str] =
     Args:
         pairs: What is compared.
         names: Metrics that are compared.
-        wanted: Metrics that somebody named, in order; empty to choose those of the first screen.
+        wanted: Metrics that the user named, in order; empty to choose those of the first screen.
     """
     asked = ask(pairs, names)
     known = {one.metric: None for one in asked}

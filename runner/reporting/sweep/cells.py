@@ -73,7 +73,7 @@ def axes_section(subject: Subject, command: str) -> Section:
 
 
 def _also_differs(subject: Subject) -> list[Block]:
-    """Return the table of config values that are not the same in all cells, though nobody swept them."""
+    """Return the table of config values that are not the same in all cells, though no axis sweeps them."""
     rows = []
     for difference in subject.measurements.differences[:_MOST_ROWS]:
         values = [f"{levels}: {shorten(text)}" if levels else shorten(text) for levels, text in difference.values]

@@ -88,7 +88,7 @@ def _explained(analyses: dict[str, EffectAnalysis]) -> str:
 
 
 def _on_chance(tests: int) -> str:
-    """Return the number of chance findings of so many tests, with its condition."""
+    """Return the number of chance findings of this many tests, with its condition."""
     count = "There is one test" if tests == 1 else f"There are {tests} tests"
     return (
         "Where an axis has no effect and the values scatter alike at all of its levels, p falls below 0.05 in one test "

@@ -89,7 +89,7 @@ def test_what_is_refused_leaves_no_arm_and_what_is_fixed_does(examined):
     assert examined(changed('type="revolute"', 'type="floating"')).arm is None
     fixed = examined(changed('effort="2000"', 'effort="0"'))
     assert fixed.arm.model.effort_limits[0] == np.inf
-    assert 'effort="1e6"' in fixed.urdf
+    assert 'effort="1000000.0"' in fixed.urdf
 
 
 def bare(*names):
@@ -164,8 +164,8 @@ def test_a_finger_that_mimics_is_held_without_its_mimic(examined):
     follows = "which moves the tip: its links no longer move with that"
     assert [str(each) for each in examination.findings if each.grade == "fixed"] == [
         f"fixed   joint 'f1_joint': {beside}; {held}",
-        f"fixed   joint 'f2_joint': {beside}, and mimics 'f1_joint'; {held}",
-        f"fixed   joint 'f3_joint': {beside}, and mimics 'q2', {follows}; {held}",
+        f"fixed   joint 'f2_joint': {beside}, and mimics 'f1_joint'; now held at 0.01 m, as it mimics",
+        f"fixed   joint 'f3_joint': {beside}, and mimics 'q2', {follows}; now held at 0 m",
     ]
     assert "mimic" not in examination.urdf
     assert examination.arm.model.joint_names == ("q1", "q2", "q3")
@@ -275,7 +275,7 @@ def test_two_arms_are_refused_with_their_ends(examined):
 
 
 def test_no_arm(examined):
-    with pytest.raises(RunnerError, match="has no joint that moves: it is no arm"):
+    with pytest.raises(RunnerError, match="has no joint that moves: it is not an arm"):
         examined('<robot name="x"><link name="a"/></robot>')
     assert grades(examined(strangers.chain("arm", [("revolute", X)])))[0] == "refused"  # one joint
 
@@ -301,3 +301,42 @@ def test_an_engine_that_reads_another_arm_is_refused():
 def test_findings_of_the_same_words_are_one_and_refused_ones_come_first():
     said = [Finding("note", f"link '{name}'", "said", "do") for name in "ab"] + [Finding("refused", "tip", "said")]
     assert list(map(str, together(said))) == ["refused tip: said", "note    links 'a', 'b': said; do"]
+
+
+def test_inertias_and_masses_in_other_units_are_named(examined):
+    assert [each for each in examined(CLEAN).findings if "Divide" in each.remedy] == []
+    base, rest = CLEAN.split('<link name="l1">')
+    scaled = re.sub(r'(i[xyz]{2})="([^"]*)"', lambda m: f'{m[1]}="{float(m[2]) * 1e6!r}"', rest, count=6)
+    heavy = scaled.replace('mass value="2.0"', 'mass value="2000.0"').replace(
+        'mass value="2000.0"', 'mass value="2.0"', 1
+    )
+    found = [str(each) for each in examined(f'{base}<link name="l1">{heavy}').findings if "Divide" in each.remedy]
+    dense = "denser than metals; g? Divide the mass by 1000"
+    assert found == [
+        "note    link 'l1': a radius of gyration of 87 m on a link of 0.3 m; kg mm^2? Divide the inertia by 1e6",
+        f"note    link 'l2': a mass of 2000 kg on a link of 0.3 m, {dense}",
+        f"note    link 'l3': a mass of 2000 kg on a link of 0.25 m, {dense}",
+    ]
+
+
+def test_the_effect_of_a_corrected_inertia_is_told(examined):
+    base, rest = CLEAN.split('<link name="l3">')
+    inertia = re.sub(r'izz="[^"]*"', 'izz="0.042"', rest, count=1)  # the others sum to 0.03
+    findings = {each.place: str(each) for each in examined(f'{base}<link name="l3">{inertia}').findings}
+    assert "which the largest is 40 % above" in findings["link 'l3'"]
+    assert re.search(r"the corrected inertias change it by up to [\d.]+ %", findings["mass matrix"])
+    assert "mass matrix" not in {each.place for each in examined(CLEAN).findings}
+
+
+def test_several_arms_and_other_faults_are_told_at_once(examined):
+    other = re.sub(r'"(l\d|q\d|tip|end)"', r'"r_\1"', CLEAN[CLEAN.index("<link") : CLEAN.index("</robot>")])
+    both = CLEAN.replace("</robot>", f'{other}<joint name="both" type="fixed"><parent link="l0"/><child link="r_l0"/>'
+                         "</joint></robot>")  # fmt: skip
+    with pytest.raises(RunnerError, match=r"branches, (.|\n)*refused link 'l1': mass -2 kg"):
+        examined(both.replace('mass value="2.0"', 'mass value="-2.0"', 1))
+
+
+@pytest.mark.parametrize("value", ["round", "nan", "inf"])
+def test_a_moment_that_is_not_a_finite_number_is_refused(found, value):
+    text = re.sub(r'ixx="[^"]*"', f'ixx="{value}"', CLEAN, count=1)
+    assert found(text, "link 'l0'").text == "an inertia that is not a finite number"

@@ -35,7 +35,7 @@ def test_gains_are_those_that_the_joints_can_bear(name):
 
 def test_a_weak_arm_is_led_slowly():
     strong = strangers.read("crane")
-    weak = strong.urdf.replace('effort="2000"', 'effort="120"')
+    weak = strong.urdf.replace('effort="2000.0"', 'effort="120"')
     (strangers.folder() / "weak.urdf").write_text(weak)
     from runner.doctor.examination import examine
 

@@ -189,18 +189,18 @@ def test_all_problems_at_once():
 
 @pytest.mark.parametrize("text", ["", "not xml", "<robot>", "<robot><link></robot>"])
 def test_what_is_no_xml(written, text):
-    with pytest.raises(ConfigError, match=r"robot\.urdf: .*arm\.urdf is no XML"):
+    with pytest.raises(ConfigError, match=r"robot\.urdf: .*arm\.urdf is not XML"):
         read_urdf(written(text), {})
 
 
 @pytest.mark.parametrize("text", ["<sdf/>", "<robot name='x'/>", "<html><link name='a'/></html>"])
 def test_what_is_no_urdf(written, text):
-    with pytest.raises(ConfigError, match=r"robot\.urdf: .*arm\.urdf is no URDF"):
+    with pytest.raises(ConfigError, match=r"robot\.urdf: .*arm\.urdf is not a URDF"):
         read_urdf(written(text), {})
 
 
 def test_what_is_no_text(tmp_path):
     path = tmp_path / "arm.urdf"
     path.write_bytes(b"\xff\xfe\x00binary")
-    with pytest.raises(ConfigError, match=r"arm\.urdf is no XML"):
+    with pytest.raises(ConfigError, match=r"arm\.urdf is not XML"):
         read_urdf(path, {})

@@ -10,7 +10,7 @@ import pytest
 from support import strangers
 from support.strangers import X, Y, Z
 
-from runner.robots.joint_dynamics import dynamics_of, hold
+from runner.robots.joint_dynamics import dynamics_of, hold, rest_position
 from runner.robots.tree import make_tree
 
 ARM = strangers.chain("arm", [("revolute", Z), ("prismatic", "0 1 2"), ("revolute", "1 -1 3"), ("revolute", X)])
@@ -24,7 +24,9 @@ def tree_of(text):
 
 def test_an_arm_with_joints_held_is_the_arm_with_them_there():
     tree = replace(tree_of(ARM), home=HELD)
-    assert {name: hold(tree, name) for name in HELD} == HELD
+    for name in HELD:
+        assert rest_position(tree, name) == HELD[name]
+        hold(tree, name, HELD[name])
     ours, theirs = (pin.buildModelFromXML(text) for text in (ET.tostring(tree.robot, encoding="unicode"), ARM))
     data, others = ours.createData(), theirs.createData()
     assert list(ours.names)[1:] == ["q1"]
@@ -55,7 +57,8 @@ def test_a_joint_is_held_at_home_or_as_near_to_zero_as_it_comes(kind, limit, hom
     text = strangers.chain("arm", [("revolute", Z), ("revolute", Y)])
     text = text.replace('lower="-2.8" upper="2.8"', limit).replace('type="revolute"', f'type="{kind}"')
     tree = replace(tree_of(text), home={} if home is None else {"q1": home})
-    assert hold(tree, "q1") == held
+    assert rest_position(tree, "q1") == held
+    hold(tree, "q1", held)
     joint = tree.joints["q1"]
     assert joint.get("type") == "fixed"
     assert {element.tag for element in joint} == {"origin", "parent", "child"}

@@ -8,8 +8,10 @@ from support.mjcf_arms import CHAIN, own_model, written
 
 from runner.base.errors import ConfigError
 from runner.doctor.examination import examine
-from runner.robots.description import read_urdf
+from runner.robots.description import read_arm, read_urdf
+from runner.robots.joint_dynamics import dynamics_of
 from runner.robots.mjcf import read_mjcf
+from runner.robots.model import RobotModel
 
 JAW = (
     '<body name="{name}" pos="0.2 0 0.02" euler="0 {turn} 0"><joint name="{name}_slide" type="slide" axis="1 0 0" '
@@ -138,3 +140,25 @@ def test_what_moves_both_ends_alike_is_not_tied(tmp_path):
     text = CHAIN.replace('<site name="tcp"', f"{LEVER}{SITES}")
     bolt = '</worldbody><equality><weld body1="lever" body2="hand"/></equality>'
     assert set(read_mjcf(written(tmp_path, text.replace("</worldbody>", bolt))).ties) == {"lift"}
+
+
+@pytest.mark.parametrize(
+    ("motor", "effort", "said"),
+    [
+        ('nominal="24 3 300" gear="10" armature="0.001"', 30.0, "(torque_limits.no_load_speed): no-load speed of the "
+         "joint in SI units 30"),
+        ('motorconst="0.08" resistance="0.64" ctrlrange="-12 12"', 1.5, "no-load speed of the joint in SI units 150"),
+        ('motorconst="0.08" resistance="0.64" saturation="2"', 2.0, "(torque_limits.no_load_speed): its voltage is not "
+         "given"),
+    ],
+)  # fmt: skip
+def test_a_direct_current_motor_limits_torque_and_speed(tmp_path, motor, effort, said):
+    actuator = f'<actuator><dcmotor name="m" joint="q2" {motor}/></actuator></mujoco>'
+    path = written(tmp_path, CHAIN.replace("</mujoco>", actuator))
+    model = RobotModel(read_urdf(path, {}), "tcp")
+    assert model.effort_limits.tolist() == [np.inf, pytest.approx(effort), np.inf]
+    given = dynamics_of(read_arm(path), "arm.xml", 9.81)
+    (text,) = given.left_out
+    assert text.startswith("back-EMF of the dc motors m ")
+    assert text.endswith(said)
+    assert given.armature[1] == pytest.approx(0.1 if "armature" in motor else 0.0)

@@ -55,7 +55,7 @@ def test_manipulability_is_the_determinant_for_three_joints_and_its_square_for_m
 
 def test_joint_limits_bound_the_workspace():
     text = urdf_of("macro")
-    text = text.replace('lower="-1000" upper="1000"', 'lower="-1" upper="1"')
+    text = text.replace('lower="-1000.0" upper="1000.0"', 'lower="-1" upper="1"')
     model = RobotModel(text, "tip")
     found = analyse(model, 2000, np.random.default_rng(5))
     # The elbow opens to q3 = -1 and folds to q3 = 1: rho^2 = 2 - 2 sin(q3).

@@ -127,6 +127,6 @@ def test_frames_of_the_mini_count_from_three():
 
 
 def test_a_limited_workspace_shows_its_inner_radius(macro):
-    text = urdf_of("macro").replace('lower="-1000" upper="1000"', 'lower="-1" upper="1"')
+    text = urdf_of("macro").replace('lower="-1000.0" upper="1000.0"', 'lower="-1" upper="1"')
     workspace = analyse(RobotModel(text, "tip"), 2000, np.random.default_rng(3))
     assert "<svg" in workspace_sphere(workspace)

@@ -74,7 +74,3 @@ def test_every_cache_of_a_module_is_bounded():
             endless = any(re.fullmatch(r"lru_cache(\((maxsize=)?None\))?", text) for text in decorators)
             unbounded += [f"{path.name}: {node.name}"] if endless else []
     assert unbounded == []
-
-
-def test_the_page_for_contributors_is_read_in_five_minutes():
-    assert len(_TEXT.split()) <= 1200
