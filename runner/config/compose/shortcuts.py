@@ -32,7 +32,7 @@ def take_shortcuts() -> None:
             read = any(each.is_interpolation() for each in defaults if not each.is_self())
             return create(overrides, defaults, self_added) if read else None
 
-        defaults_list._create_interpolation_map = create_if_read  # type: ignore[assignment] # nobody reads None
+        defaults_list._create_interpolation_map = create_if_read  # type: ignore[assignment] # None is not read
 
 
 class KeptRepository(ConfigRepository):
@@ -66,5 +66,5 @@ class KeptRepository(ConfigRepository):
 
 @lru_cache(maxsize=4)
 def kept_files(*_: object) -> dict[str, bytes]:
-    """Return what is kept of config files, of which the arguments are the state."""
+    """Return the kept content of config files by path; the arguments are the state of the files."""
     return {}

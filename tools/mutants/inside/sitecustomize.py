@@ -1,7 +1,7 @@
 """Python imports this at its start: while blocks are recorded, modules of the tree are compiled with probes.
 
-Files of the tree that are opened count as well. Of a Python source only what a test or a tool reads counts: Python
-itself imports it, and the package makes digests of its own.
+Files of the tree that are opened count as well. A Python source counts if a test or a tool reads it. It does not count
+if Python imports it, or if the package reads it for a digest.
 """
 
 import ast
