@@ -75,6 +75,13 @@ class Row:
         numbers = [self.runs, str(self.caveats), str(self.failed), self.size, self.state]
         return [self.when, self.entry.kind, shorten(self.what, _LONGEST), shorten(self.answer, _LONGEST), *numbers]
 
+    @property
+    def standing(self) -> str:
+        """State, failed runs, caveats and size in a few words."""
+        parts = [self.state, f"{self.failed} failed" if self.failed else ""]
+        parts += [f"{self.caveats} with caveats" if self.caveats else "", self.size]
+        return ", ".join(filter(None, parts))
+
 
 HEADER = ("when", "kind", "what", "answer", "runs", "caveats", "failed", "size", "state")
 """Heads of the columns of `Row.cells`."""
@@ -160,7 +167,10 @@ def write_page(rows: Sequence[Row], outputs: Path, path: Path) -> None:
     progress.begin("writing the page")
     listed = [
         {
-            "cells": row.cells,
+            "when": row.when,
+            "kind": row.entry.kind,
+            "runs": row.runs,
+            "standing": row.standing,
             "what": row.what,
             "answer": row.answer,
             "folder": os.path.relpath(row.entry.folder, Path.cwd()),
@@ -175,7 +185,6 @@ def write_page(rows: Sequence[Row], outputs: Path, path: Path) -> None:
         .get_template("results.html.j2")
         .render(
             rows=listed,
-            header=HEADER,
             outputs=outputs.resolve().name,
             script=script,
             policy=script_policy([script]),

@@ -14,6 +14,11 @@ from runner.reporting.markup import spans
 from runner.reporting.outline import verdict_place
 from runner.reporting.verdicts import WORDS
 
+_BEFORE_UNIT = re.compile(
+    r"(?<=[\d⁰¹²³⁴⁵⁶⁷⁸⁹]) (?=(?:%|[mµ]?m|[mµ]?s|m/s²?|N²?|rad(?:/s)?|J|kg|Hz|°|pairs?)(?![\w/]))", re.ASCII
+)
+_INSIDE_UNIT = re.compile(r"(?<=[\d⁰¹²³⁴⁵⁶⁷⁸⁹]\u00a0N) (?=m\b)|(?<=\u00a0N²) (?=m²)|(?<=m²) (?=s\b)")
+_PART_OF_NAME = re.compile(r"(?<=[_=/])|(?<=\.)(?!\d)")
 _SIZE = re.compile(r'viewBox="[-\d.]+ [-\d.]+ ([\d.]+) ([\d.]+)"')
 
 
@@ -84,6 +89,16 @@ def origin_label(origin: Origin, kind: str) -> str:
     return f"{kind} {number}" if number[0].isdigit() else number[0].upper() + number[1:]
 
 
+def bind_units(text: str) -> str:
+    """Return a string in which no line break parts a number from its unit."""
+    return _INSIDE_UNIT.sub("\u00a0", _BEFORE_UNIT.sub("\u00a0", text))
+
+
+def name_parts(text: str) -> list[str]:
+    """Return the parts of a string, such as a key of a config, between which a line may break; numbers stay whole."""
+    return _PART_OF_NAME.split(bind_units(text))
+
+
 def aspect(svg: str) -> str:
     """Return width and height of a drawing as the style `aspect-ratio` has them."""
     size = _SIZE.search(svg)
@@ -103,6 +118,8 @@ def _environment(**options: Any) -> jinja2.Environment:
         "spans": spans,
         "origin_label": origin_label,
         "aspect": aspect,
+        "bind_units": bind_units,
+        "name_parts": name_parts,
         "name_text": name_text,
         "by_finding": by_finding,
         "by_place": by_place,
