@@ -312,7 +312,9 @@ class Answer(Asked):
         size, most = (
             factor * max((abs(one) for one in some if np.isfinite(one)), default=0.0) for some in (told, found.medians)
         )
-        decimals = 1 - math.floor(math.log10(size)) if size > 0.0 else 2
+        if self._differs_at_most(_EQUAL):
+            size = most / 10.0  # three digits of the median
+        decimals = 1 - math.floor(math.log10(size)) if size > 0.0 else 0
         if most > 0.0:
             decimals = min(decimals, _MOST_DIGITS - 1 - math.floor(math.log10(most)))
         return max(0, decimals)

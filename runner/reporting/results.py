@@ -8,6 +8,7 @@ from pathlib import Path
 
 from runner.base import progress
 from runner.base.errors import RunnerError, StoreError
+from runner.base.quantities import with_powers
 from runner.base.sanitize import one_line
 from runner.reporting.figures import playback
 from runner.reporting.metric_titles import key_metrics
@@ -138,7 +139,7 @@ def _row(entry: Entry, sizes: Mapping[str, int]) -> Row:
 
 def _run_row(entry: Entry, run: Run) -> Row:
     found = key_metrics(run, 1)
-    answer = run.failure or "; ".join(f"{name} {value}" for name, value, _ in found)
+    answer = with_powers(run.failure or "") or "; ".join(f"{name} {value}" for name, value, _ in found)
     failed = int(run.status == "failed")
     return Row(entry, " ".join(run.overrides), answer, f"1 x {run.repetitions}", len(run.caveats), failed)
 

@@ -76,7 +76,7 @@ def axis_effects(
     of = np.arange(len(kept)) if blocks is None else recode_levels(blocks[kept])
     if len(kept) > MOST_VALUES:
         drawn = _drawn(of, np.random.default_rng(seed))
-        kept, of = kept[drawn], of[drawn]
+        kept, of = kept[drawn], recode_levels(of[drawn])
     y = values[kept]
     logarithmic = bool(y.size and y.min() > 0 and y.max() > _DECADE * y.min())
     y = np.log10(y) if logarithmic else y
