@@ -66,7 +66,7 @@ def true_answers(samples: int) -> float:
 
 
 def _said(metrics: dict[str, FloatArray]) -> tuple[bool, bool]:
-    """Return True if a sweep says a winner in the first metric, and in the other one, pooled or in a cell of the map."""
+    """Return True for a winner in the first metric, and in the other one: pooled, or in a cell of the map."""
     laws, levels = np.divmod(np.arange(2 * _LEVELS), _LEVELS)
     measured = Measurements(
         axes=[Axis("controller", ["a", "b"], laws), Axis("noise.position", [1.0, 2.0, 3.0], levels)],

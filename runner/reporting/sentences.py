@@ -20,18 +20,20 @@ def sentences(answers: Sequence[Answer]) -> list[str]:
     """
     first = [one for one in answers if one.rank == 0]
     overall = [one for one in first if not one.at]
-    if first and not any(one.is_answerable for one in first):
+    if not first:
+        return []
+    if not any(one.is_answerable for one in first):
         n, family = max((one.comparison.n, one.family) for one in first)
         pairs = "1 pair is" if n == 1 else f"{n} pairs are"
         return [f"{pairs} too few for {_count(family, 'comparison')}: {fewest_pairs(ALPHA / family)} would do."]
-    found = conditions_of(first, first[0].metric) if first else []
+    found = conditions_of(first, first[0].metric)
     if overall:
         texts = [one.sentence(price(one, answers)) for one in overall]
         texts = [*_some(texts, _MOST_SENTENCES), *([_agreement(found)] if len(found) > 1 else [])]
     else:
         texts = [_headline(found), *_some([told for each in found for told in _at(each, answers)], _MOST_CONDITIONS)]
     left_out = [one for one in first if not one.is_answerable]
-    return [*texts, *([unanswerable(left_out)] if left_out else [])] if first else []
+    return [*texts, *([unanswerable(left_out)] if left_out else [])]
 
 
 def price(one: Answer, answers: Sequence[Answer]) -> str:

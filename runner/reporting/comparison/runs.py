@@ -2,7 +2,7 @@
 
 from collections.abc import Sequence
 
-from runner.base.quantities import above_rounding
+from runner.base.quantities import above_rounding, with_powers
 from runner.base.sanitize import one_line
 from runner.reporting.answers import PAIRS, Answer
 from runner.reporting.comparison.differences import ConfigDifferences, find_differences
@@ -33,7 +33,9 @@ def runs_document(runs: Sequence[Run]) -> Document:
         told += sentences(answers) or [f"{sides[0].name} and {side.name}: {why}."]
         compared.append(answers)
     told += [one.in_words(names[0], name) for one, name in zip(differences, names[1:], strict=True)]
-    failed = [f"{name} {run.failure}." for name, run in zip(names, runs, strict=True) if run.status == "failed"]
+    failed = [
+        with_powers(f"{name} {run.failure}.") for name, run in zip(names, runs, strict=True) if run.status == "failed"
+    ]
     caveats = [f"{name}: {', '.join(str(one['rule']) for one in run.caveats)}"
                for name, run in zip(names, runs, strict=True) if run.caveats]  # fmt: skip
     told += [f"May mislead: {'; '.join(caveats)}."] if caveats else []

@@ -77,7 +77,9 @@ def test_a_sweep_over_conditions_names_no_winner():
 def test_one_number_is_told_if_it_describes_all_conditions():
     subject = sweep(agreeing)
     first, agreement = sentences(find_answers(subject))
-    assert first.startswith("Largest tracking error: 16 % smaller with operational_space than with computed_torque (12.")
+    assert first.startswith(
+        "Largest tracking error: 16 % smaller with operational_space than with computed_torque (12."
+    )
     assert agreement.startswith("By condition: operational_space is smaller in 2 of 2 conditions (")
 
 
@@ -144,7 +146,9 @@ def test_a_cell_at_a_limit_is_marked_and_its_torque_not_compared():
 
 def test_of_very_many_conditions_those_that_differ_most_are_shown():
     axes = {"noise.position": list(np.linspace(1e-4, 1e-3, 200)), "controller": ["a", "b"]}
-    answers = find_answers(sweep(lambda noise, law: 10.0 + law * noise / 50.0 + 1e-4 * drawn(16, law, noise), axes=axes))
+    answers = find_answers(
+        sweep(lambda noise, law: 10.0 + law * noise / 50.0 + 1e-4 * drawn(16, law, noise), axes=axes)
+    )
     shown = make_map(answers)
     assert len(shown.rows) == MOST_CELLS
     assert f"{MOST_CELLS} of 200 conditions are shown, those with the largest differences." in shown.caption

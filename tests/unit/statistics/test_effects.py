@@ -144,3 +144,4 @@ def test_an_interaction_of_many_values_is_found_in_groups_of_them():
     product = (axes["a"] - 19.5) * (axes["b"] - 14.5) / 100.0
     with_product, without = (effects_of(axes, y + rng.normal(size=1200)) for y in (product, 0.1 * axes["a"]))
     assert with_product[("a", "b")].share > 0.4
+    assert without[("a", "b")].share < 0.1
