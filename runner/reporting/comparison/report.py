@@ -70,7 +70,7 @@ def comparison_document(sides: Sequence[Measurements], wanted: Sequence[str] = (
     told += [one.differences.in_words(one.pairs.first, one.pairs.second) for one in found]
     told += [NOISE_ALONE] if any(noise_alone([one.pairs.a, one.pairs.b]) for one in found) else []
     return Document(
-        title=found[0].differences.question("A", "B") if len(found) == 1 else f"{len(sides)} sweeps compared",
+        title=(len(found) == 1 and found[0].differences.question("A", "B")) or f"{len(sides)} sweeps compared",
         subtitle=literal(", ".join(f"{side.name}: {side.folder.resolve().name}" for side in sides)),
         abstract=literal("\n".join(map(one_line, told))),
         sections=[*compared, _sides(sides), _caveats(sides), _made(sides)],

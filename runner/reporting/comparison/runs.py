@@ -44,7 +44,7 @@ def runs_document(runs: Sequence[Run]) -> Document:
         for name, run in zip(names, runs, strict=True)
     ]
     return Document(
-        title=differences[0].question(*names) if len(runs) == 2 else f"{len(runs)} runs compared",
+        title=(len(runs) == 2 and differences[0].question(*names)) or f"{len(runs)} runs compared",
         subtitle=literal("; ".join(f"{name}: {run_name(run)}" for name, run in zip(names, runs, strict=True))),
         abstract=literal("\n".join(map(one_line, [*failed, *told]))),
         sections=[Section("Side by side", _side_by_side(runs, names, differences, compared[0])), *details],
