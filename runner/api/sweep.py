@@ -166,7 +166,7 @@ class Sweep(store.Sweep):
         from runner.sweeps.finer_step import work_out_sweep
 
         work_out_sweep(self)
-        self.__dict__.pop("_measurements", None)  # measured before the finer step was worked out
+        self.__dict__.pop("_measurements", None)  # measured before the finer step was simulated
         inside = [within] if isinstance(within, str) else within
         asked = by or getattr(find_question(self._axes, self.question), "name", "")
         if not asked:

@@ -1,6 +1,6 @@
 """Compare runs or sweeps, the first with each of the others.
 
-Sweeps are compared by cell and repetition. Of one sweep the values of an axis are compared: --by, else its question,
+Sweeps are compared by cell and repetition. With one sweep, it compares the values of an axis: --by, else its question,
 such as the controller. For a run and a recording of a real arm (CSV or ROS bag) it writes a report in reports/ and
 prints its folder.
 
@@ -133,7 +133,7 @@ def _question(thing: "Run | Sweep") -> str:
     if asked is None:
         known = ", ".join(axis.name for axis in axes) or "nothing"
         raise RunnerError(
-            f"{folder}: only one sweep, over conditions alone. Add a second one, or compare the levels of an axis "
+            f"{folder}: only one sweep, over conditions only. Add a second one, or compare the levels of an axis "
             f"({known}): `runner compare {folder} --by AXIS`"
         )
     return asked.name

@@ -10,7 +10,7 @@ from runner.reporting.markup import literal
 from runner.reporting.metric_titles import title
 
 MOST_CELLS = 24
-"""Cells of a map. Of more conditions those with the largest differences are shown."""
+"""Cells of a map. More conditions: those with the largest differences."""
 
 _MOST_COLUMNS = 4
 _SATURATED = " * A joint is at its torque limit at more ticks than the caveat saturation allows."
@@ -37,7 +37,7 @@ class AnswerMap:
         caption: What it shows; inline mathematics as in Text.
         corner: What the rows are.
         columns: Titles of the columns.
-        rows: Title of each row with its cells, as many as there are columns.
+        rows: Title of each row with its cells, one for each column.
     """
 
     caption: str
@@ -55,7 +55,7 @@ def make_map(answers: Sequence[Answer]) -> AnswerMap | None:
     names = list(dict.fromkeys(name for each in found for name in each.names))
     n, family = max(max((one.comparison.n, one.family) for one in each.answers) for each in found)
     caption = (
-        f"Smaller {title(metric)} by condition, in per cent of the larger one. Not told: {n} pairs show no difference "
+        f"Smaller {title(metric)} by condition, in per cent of the larger one. Not shown: {n} pairs show no difference "
         f"in {family} comparisons."
     )
     if len(found) > MOST_CELLS:

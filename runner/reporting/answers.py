@@ -31,7 +31,7 @@ SHARE = 0.02
 
 PAIRS = (
     "A pair is one draw of both: the same seed and repetition, cells that share a draw by their mean. Differences are "
-    "Hodges-Lehmann estimates over the pairs, beside the median of the larger side. The intervals of a metric hold "
+    "Hodges-Lehmann estimates over the pairs, with the median of the larger side. The intervals of a metric hold "
     f"together at {100 * (1 - ALPHA):g} % (signed ranks, Holm)."
 )
 """Meaning of the numbers of a comparison, once for each page."""
@@ -39,7 +39,7 @@ PAIRS = (
 EXPLAINED = (
     f"{PAIRS} Effect is the rank-biserial correlation: 1 with all pairs larger, -1 with all smaller. p of the "
     "signed-rank test is corrected for all comparisons of a metric. Each metric is a separate question: of equal "
-    f"metrics one in twenty is told by chance. An answer needs p below {ALPHA:g} and a difference above the plant's "
+    f"metrics one in twenty is shown by chance. An answer needs p below {ALPHA:g} and a difference above the plant's "
     f"error in it and above {100 * SHARE:g} % of the larger median, or {SHARE:g} of a fraction."
 )
 
@@ -84,7 +84,7 @@ class Asked:
         unit: Its unit.
         comparison: The second against the first, draw by draw.
         pairs: The compared cells.
-        limit: Joint at its torque limit because of which the metric is not compared; empty for none.
+        limit: Joint at its torque limit that the metric shows instead of a law; empty for none.
     """
 
     metric: str
@@ -178,8 +178,8 @@ class Answer(Asked):
     def sign(self) -> int:
         """-1 where the second may be called smaller, 1 where larger, 0 where neither may be said."""
         sure = self.comparison.exact or (self.p_value is not None and self.p_value < ALPHA)
-        told = sure and not self.limit and abs(self.comparison.difference) > self.least
-        return int(np.sign(self.comparison.difference)) if told else 0
+        holds = sure and not self.limit and abs(self.comparison.difference) > self.least
+        return int(np.sign(self.comparison.difference)) if holds else 0
 
     @property
     def smaller(self) -> str:
@@ -308,9 +308,9 @@ class Answer(Asked):
     def _decimals(self) -> int:
         """Decimals of all numbers: for two digits of the difference, or without an answer of its interval."""
         found, (factor, _) = self.comparison, self.scale
-        told = [found.difference] if self.sign else [found.difference, *(self.interval or ())]
+        shown = [found.difference] if self.sign else [found.difference, *(self.interval or ())]
         size, most = (
-            factor * max((abs(one) for one in some if np.isfinite(one)), default=0.0) for some in (told, found.medians)
+            factor * max((abs(one) for one in some if np.isfinite(one)), default=0.0) for some in (shown, found.medians)
         )
         if self._differs_at_most(_EQUAL):
             size = most / 10.0  # three digits of the median
@@ -396,10 +396,10 @@ class Answer(Asked):
         if self.sign < 0 and ends:
             ends = -ends[1], -ends[0]
         minus = "-" if not self.sign and found.difference < 0 else ""
-        told = [self._range(ends), f"{found.n} pairs"]
-        told += [f"no value in {a} and {b} of {found.n} draws" for a, b in [found.lost] if a or b]
-        told += ["integration error unknown"] if self.sign and found.error is None else []
-        return f"{minus}{self.printed.amount} in pairs ({', '.join(filter(None, told))})"
+        parts = [self._range(ends), f"{found.n} pairs"]
+        parts += [f"no value in {a} and {b} of {found.n} draws" for a, b in [found.lost] if a or b]
+        parts += ["integration error unknown"] if self.sign and found.error is None else []
+        return f"{minus}{self.printed.amount} in pairs ({', '.join(filter(None, parts))})"
 
 
 def ask(pairs: Sequence[Pairs], metrics: Sequence[str]) -> list[Asked]:

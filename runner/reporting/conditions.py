@@ -51,7 +51,7 @@ class Condition:
 
     @property
     def word(self) -> str:
-        """The answer in a few words, such as "operational_space -31 %", "equal", "at a limit" or "not told"."""
+        """The answer in a few words, such as "operational_space -31 %", "equal", "at a limit" or "not shown"."""
         if self.winner:
             exactly = " exact" if all(one.comparison.exact for one in self.answers) else ""
             return f"{self.winner} {f'-{self.share}' if self.share else 'smaller'}{exactly}"
@@ -67,7 +67,7 @@ class Condition:
             return "equal, exact"
         counts = [one.pairs_that_tell for one in self.answers if not one.sign]
         known = [count for count in counts if count]
-        return f"not told ({number(float(max(known)), 2)} pairs would)" if known else "not told"
+        return f"not shown ({number(float(max(known)), 2)} pairs would)" if known else "not shown"
 
     @property
     def is_saturated(self) -> bool:
@@ -77,7 +77,7 @@ class Condition:
 
     @property
     def size(self) -> float:
-        """The largest difference of a pair of values, in shares of the larger median."""
+        """The largest difference of a pair of values, relative to the larger median."""
         return max(_relative(one) for one in self.answers)
 
 

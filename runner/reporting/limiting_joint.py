@@ -1,4 +1,4 @@
-"""Joint of a stored run that is nearest to its torque limit, with the share of its speed limit."""
+"""Joint of a stored run that is nearest to its torque limit, and how much of its speed it uses."""
 
 from typing import Any
 

@@ -31,7 +31,7 @@ def sentences(answers: Sequence[Answer]) -> list[str]:
         texts = [one.sentence(price(one, answers)) for one in overall]
         texts = [*_some(texts, _MOST_SENTENCES), *([_agreement(found)] if len(found) > 1 else [])]
     else:
-        texts = [_headline(found), *_some([told for each in found for told in _at(each, answers)], _MOST_CONDITIONS)]
+        texts = [_headline(found), *_some([text for each in found for text in _at(each, answers)], _MOST_CONDITIONS)]
     left_out = [one for one in first if not one.is_answerable]
     return [*texts, *([unanswerable(left_out)] if left_out else [])]
 
@@ -69,7 +69,7 @@ def _at(condition: Condition, answers: Sequence[Answer]) -> list[str]:
 
 
 def _agreement(found: Sequence[Condition]) -> str:
-    """Return in how many conditions a pooled answer is also told in the condition alone."""
+    """Return in how many conditions a pooled answer also holds in a single condition."""
     return f"By condition: {_tally(found)}."
 
 
@@ -82,7 +82,7 @@ def _headline(found: Sequence[Condition]) -> str:
 
 
 def _tally(found: Sequence[Condition]) -> str:
-    """Return how many conditions have which answer, such as "a is smaller in 2 of 4 (12 to 31 %), 2 not told"."""
+    """Return how many conditions have which answer, such as "a is smaller in 2 of 4 (12 to 31 %), not shown in 2"."""
     texts = []
     for name, count in Counter(each.winner for each in found if each.winner).most_common():
         shares = [float(each.share.split()[0]) for each in found if each.winner == name and _is_plain(each.share)]

@@ -60,8 +60,8 @@ def axis_effects(
 ) -> EffectAnalysis:
     """Return the effects of axes on a metric.
 
-    An effect's share is its sum of squares beyond the model without it, over the total; a main effect stands beside
-    the other main effects, an interaction beside all main effects. Positive values that span more than a decade are
+    An effect's share is its sum of squares beyond the model without it, over the total; a main effect is judged with
+    the other main effects, an interaction with all main effects. Positive values that span more than a decade are
     taken by their logarithms: an interaction is then what a product of two effects leaves.
 
     Args:

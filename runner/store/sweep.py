@@ -28,7 +28,7 @@ if TYPE_CHECKING:
 _FILE = "sweep.json"
 _RUNS = "runs.bin"  # hashes of the runs of a grid, 12 bytes for each cell
 QUESTION = "question.json"
-"""File beside a sweep with the axis that somebody asked about."""
+"""File of a sweep with the axis that a user asked about."""
 _AT_ONCE = 10_000  # rows
 _REMEDY = "the sweep's command writes it again"
 _NO_SPEC: "Mapping[str, Bound]" = {}
@@ -45,7 +45,7 @@ class Sweep:
         command: Command that starts or resumes the sweep.
         spec: Bounds on metrics, against which the runs are evaluated instead of their own; empty for none.
         history: Bounds of all its commands, each with the date of the first command that had it.
-        question: Axis that somebody asked about last; empty for the one that its axes suggest.
+        question: Axis that a user asked about last; empty for the one that its axes suggest.
     """
 
     folder: Path

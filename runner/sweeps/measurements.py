@@ -54,7 +54,7 @@ class Measurements:
         missing: Number of cells that are not stored.
         damage: Damaged files, a message for each.
         machines: Distinct machines that made the runs.
-        question: Axis that somebody asked about; empty for none.
+        question: Axis that a user asked about; empty for none.
     """
 
     axes: Sequence[Axis]

@@ -1,7 +1,7 @@
 """Question of a sweep: the axis whose values are compared; the other axes are conditions of the answer.
 
 A designer chooses the law, then its gains, then other values such as the trajectory or the period. Robot, noise, model
-error, payload, environment, engine and seed are conditions, unless somebody asks for one of them with `--by`.
+error, payload, environment, engine and seed are conditions, unless a user asks for one of them with `--by`.
 """
 
 import contextlib
@@ -33,7 +33,7 @@ def find_question(axes: Sequence[Axis], asked: str = "") -> Axis | None:
 
     Args:
         axes: The swept axes.
-        asked: Name of the axis that somebody asked for; empty for none.
+        asked: Name of the axis that a user asked for; empty for none.
     """
     chosen = next((axis for axis in axes if axis.name == asked), None)
     choices = [axis for axis in axes if not is_condition(axis.name)]
@@ -41,7 +41,7 @@ def find_question(axes: Sequence[Axis], asked: str = "") -> Axis | None:
 
 
 def keep_question(sweep: Sweep, axis: str) -> None:
-    """Store the axis that somebody asks about beside a sweep, which its later answers follow.
+    """Store the axis that a user asks about with a sweep, which its later answers follow.
 
     Nothing is stored if the sweep already asks about it, or if its folder cannot be written.
     """

@@ -21,7 +21,7 @@ from runner.sweeps.measurements import Measurements
 from runner.sweeps.question import SEED
 
 MOST_ORDERED = 6
-"""An axis with more values is compared with its first value alone, not each value with each."""
+"""An axis with more values is compared only with its first value, not each value with each."""
 MOST_PAIRS = 1_000
 """Most draws in a comparison. A random selection replaces more: a million means of two are sorted in 0.1 s."""
 Cells = NDArray[np.intp]

@@ -27,18 +27,18 @@ def runs_document(runs: Sequence[Run]) -> Document:
     names = [letter(place) for place in range(len(runs))]
     sides = [measure_run(run, name) for run, name in zip(runs, names, strict=True)]
     differences = [find_differences(match(sides[0], side)) for side in sides[1:]]
-    told, compared = [], []
+    lines, compared = [], []
     for side in sides[1:]:
         answers, why = compare_runs(sides[0], side)
-        told += sentences(answers) or [f"{sides[0].name} and {side.name}: {why}."]
+        lines += sentences(answers) or [f"{sides[0].name} and {side.name}: {why}."]
         compared.append(answers)
-    told += [one.in_words(names[0], name) for one, name in zip(differences, names[1:], strict=True)]
+    lines += [one.in_words(names[0], name) for one, name in zip(differences, names[1:], strict=True)]
     failed = [
         with_powers(f"{name} {run.failure}.") for name, run in zip(names, runs, strict=True) if run.status == "failed"
     ]
     caveats = [f"{name}: {', '.join(str(one['rule']) for one in run.caveats)}"
                for name, run in zip(names, runs, strict=True) if run.caveats]  # fmt: skip
-    told += [f"May mislead: {'; '.join(caveats)}."] if caveats else []
+    lines += [f"May mislead: {'; '.join(caveats)}."] if caveats else []
     details = [
         Section(f"{name}: {run_name(run)}", [*run_blocks(run), *config_blocks(run), provenance([run])])
         for name, run in zip(names, runs, strict=True)
@@ -46,7 +46,7 @@ def runs_document(runs: Sequence[Run]) -> Document:
     return Document(
         title=(len(runs) == 2 and differences[0].question(*names)) or f"{len(runs)} runs compared",
         subtitle=literal("; ".join(f"{name}: {run_name(run)}" for name, run in zip(names, runs, strict=True))),
-        abstract=literal("\n".join(map(one_line, [*failed, *told]))),
+        abstract=literal("\n".join(map(one_line, [*failed, *lines]))),
         sections=[Section("Side by side", _side_by_side(runs, names, differences, compared[0])), *details],
         date=max(str(run.provenance["date"]) for run in runs),
         shown=1,

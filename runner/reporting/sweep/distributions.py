@@ -92,7 +92,7 @@ def _in_order(subject: Subject, metric: str) -> Curves:
 
 
 def motions_section(subject: Subject, shown: Mapping[int, Run], at: str) -> Section:
-    """Return the motions of cells that differ in the question alone.
+    """Return the motions of cells that differ only in the question.
 
     Args:
         subject: The sweep.
@@ -104,7 +104,7 @@ def motions_section(subject: Subject, shown: Mapping[int, Run], at: str) -> Sect
         cell: f"{asked.name}={asked.text(int(asked.level[cell]))}" if asked else subject.cell_name(cell)
         for cell in shown
     }
-    where = [Text(literal(f"The runs differ in {asked.name} alone, at {at}."))] if asked and at else []
+    where = [Text(literal(f"The runs differ only in {asked.name}, at {at}."))] if asked and at else []
     return Section("Motions", (*where, *motion_blocks({names[cell]: run for cell, run in shown.items()})))
 
 

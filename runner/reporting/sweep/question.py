@@ -39,7 +39,7 @@ _MOST_PAIRS = 24
 
 
 def find_answers(subject: Subject) -> list[Answer]:
-    """Return the answers to the question of a sweep; none if no two cells differ in it alone and share their seed."""
+    """Return the answers to the question of a sweep; none if no two cells differ only in it and share their seed."""
     axis = asked_axis(subject)
     if axis is None or not subject.metrics or too_few(subject):
         return []
@@ -111,9 +111,9 @@ def made_equal(subject: Subject) -> str:
         values = [measured.resolved(key) for key in keys]
         equal = all(some[place] == some[group[0]] for some in values for group in groups for place in group.tolist())
         (same if equal else different).append(what)
-    told = [f"the same for each value of {axis.name}: {', '.join(same)}"] if same else []
-    told += [f"not the same: {', '.join(different)}"] if different else []
-    return f"{capital('; '.join(told))}." if told else ""
+    parts = [f"the same for each value of {axis.name}: {', '.join(same)}"] if same else []
+    parts += [f"not the same: {', '.join(different)}"] if different else []
+    return f"{capital('; '.join(parts))}." if parts else ""
 
 
 def in_short(subject: Subject) -> str:

@@ -155,7 +155,7 @@ def _title(subject: Subject) -> str:
     return f"Which {axis.name}: {choices}{within}?" if axis.numbers is None else f"What {axis.name} changes{within}"
 
 
-def _abstract(subject: Subject, sweep: Sweep, answers: Sequence[Answer], told: Sequence[str]) -> list[str]:
+def _abstract(subject: Subject, sweep: Sweep, answers: Sequence[Answer], first: Sequence[str]) -> list[str]:
     """Return what failed and the answer, then what may mislead: a paragraph each."""
     measurements = subject.measurements
     cells, failed = len(measurements.hashes), measurements.failed
@@ -167,7 +167,7 @@ def _abstract(subject: Subject, sweep: Sweep, answers: Sequence[Answer], told: S
     if sweep.spec:
         texts.append(spec.summary(subject, sweep))
     few = too_few(subject) if subject.ranked and subject.axes else ""
-    texts += [few] if few else [*told, *causes(subject, answers)]
+    texts += [few] if few else [*first, *causes(subject, answers)]
     if answers:
         texts += filter(None, [made_equal(subject)])
     if subject.ranked and subject.axes:

@@ -30,17 +30,17 @@ def _remedy(subject: Subject, axis: Axis, failed: NDArray[np.bool_]) -> str:
     others = [other for other in subject.axes if other is not axis and other.name != "seed"]
     found: dict[str, list[str]] = {}
     for levels, cells in group_cells(others, np.arange(len(failed))):
-        told = _boundary(axis, failed, cells)
-        if told:
+        phrase = _boundary(axis, failed, cells)
+        if phrase:
             at = ", ".join(f"{other.name}={other.text(level)}" for other, level in zip(others, levels, strict=True))
             bound = _bound(subject, axis, cells)
-            found.setdefault(f"{told}{bound}", []).append(at)
+            found.setdefault(f"{phrase}{bound}", []).append(at)
     if not found:
         return ""
     if len(found) == 1:
-        (told,) = found
-        return f"{axis.name}: {told}."
-    texts = [f"{told} at {'; '.join(places[:_NAMED])}" for told, places in list(found.items())[:_NAMED]]
+        (phrase,) = found
+        return f"{axis.name}: {phrase}."
+    texts = [f"{phrase} at {'; '.join(places[:_NAMED])}" for phrase, places in list(found.items())[:_NAMED]]
     more = f"; {len(found) - _NAMED} more bounds" if len(found) > _NAMED else ""
     return f"{axis.name}: {'; '.join(texts)}{more}."
 

@@ -108,7 +108,7 @@ def test_the_question_is_the_law_and_by_asks_another_which_is_kept(cli, folder, 
 def test_a_sweep_over_conditions_needs_by(cli):
     ending = cli("compare", cli("-m", *TASK, "gravity=9.81,9.7").folder)
     assert (ending.code, ending.out) == (2, "")
-    assert "only one sweep, over conditions alone. Add a second one, or compare the levels of an axis" in ending.err
+    assert "only one sweep, over conditions only. Add a second one, or compare the levels of an axis" in ending.err
 
 
 def test_by_is_for_one_sweep(cli, folder):

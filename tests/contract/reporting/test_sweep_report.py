@@ -18,7 +18,7 @@ PERIODS, RATES = (0.005, 0.01, 0.02, 0.04), (20, 40, 80)
 
 @pytest.fixture(scope="module")
 def document(sweep12, report):
-    """The report of the same sweep, whose finer step is worked out by then."""
+    """The report of the same sweep, whose finer step is simulated by then."""
     assert report.folder.is_dir()
     return sweep_document(sweep12, (), "../../runs/")
 
@@ -73,13 +73,13 @@ def test_the_line_of_theory_parts_the_failed_cells_from_the_others(document):
     assert cells.failed.tolist() == [[product > 1.0 for product in row] for row in products]
 
 
-def test_motions_that_differ_in_the_question_alone_are_laid_over_each_other(document, sweep12):
+def test_motions_that_differ_only_in_the_question_are_laid_over_each_other(document, sweep12):
     (motion,) = blocks_of(document, Playback)
     names = [run.name for run in (motion, *motion.others)]
     ok = [found for found in sweep12.runs() if found.status == "ok"]
     assert sorted(names) == [f"controller.natural_frequency={rate}" for rate in RATES]
-    told = next(block.text for block in blocks_of(document, Text) if "differ in controller" in block.text)
-    assert "The runs differ in controller.natural_frequency alone, at controller.period=" in told
+    text = next(block.text for block in blocks_of(document, Text) if "differ only in controller" in block.text)
+    assert "The runs differ only in controller.natural_frequency, at controller.period=" in text
     periods = {word for run in (motion, *motion.others) for word in run.origin.command.split() if "period=" in word}
     assert len(periods) == 1
     (curves,) = [block for block in blocks_of(document, Curves) if block.origin == motion.origin]

@@ -141,7 +141,7 @@ def test_the_printed_difference_and_value_give_the_printed_per_cent(seed):
 
 
 def test_what_draws_nothing_is_exact():
-    """T12: no talk of pairs where nothing is drawn, and the plant's own error stands beside the difference."""
+    """T12: no talk of pairs where nothing is drawn, and the sentence has the plant's own error."""
 
     def exact(difference, error):
         found = replace(compare_paired(np.ones(1), np.ones(1) + difference), error=error, exact=True)
@@ -191,8 +191,8 @@ def test_the_comparisons_of_a_metric_are_one_family_whatever_else_is_asked():
     assert [answer.family for answer in found] == [1, 4, 4, 4, 4, 2, 2]
     assert [answer.p_value * 128 for answer in found] == [1, 4, 4, 4, 4, 2, 2]
     assert [answer.rank for answer in found] == [0, 1, 1, 1, 1, 2, 2]
-    alone = judge([asked(APART, metric="energy")] * 2, ["energy"])
-    assert [answer.cells for answer in alone] == [answer.cells for answer in found[-2:]]
+    single = judge([asked(APART, metric="energy")] * 2, ["energy"])
+    assert [answer.cells for answer in single] == [answer.cells for answer in found[-2:]]
 
 
 def test_all_comparisons_of_a_metric_have_one_unit():

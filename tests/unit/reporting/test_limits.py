@@ -12,7 +12,7 @@ AXES = {"controller": ["a", "b"]}
 
 
 def sides(share, threshold=None, **metrics):
-    """Return two cells, in the second of which joint 2 is at its limit of 87 N m in a share of its ticks."""
+    """Return two cells; in the second one, joint 2 is at its limit of 87 N m at some ticks."""
     values = {
         "saturation_fraction": lambda law: np.array([0.0, share if law else 0.0]),
         "saturation_fraction_q1": lambda law: np.zeros(2),

@@ -33,7 +33,7 @@ def sweep(error, repetitions=8, axes=AXES, **metrics):
 
 
 def turning(noise, law):
-    """Errors of which the other one is smaller at the other level of noise."""
+    """Errors whose order changes with the level of noise."""
     return 10.0 + (2.0 if noise == law else 0.0) + 0.1 * drawn(8, law, noise)
 
 
@@ -114,7 +114,7 @@ def test_the_map_names_the_better_law_in_each_cell():
     shown = make_map(find_answers(sweep(error, axes=axes)))
     assert (shown.corner, list(shown.columns)) == ("robot", ["noise.position=0.0001", "noise.position=0.001"])
     (_, panda), (_, ur5e) = shown.rows
-    assert all(cell.text.startswith("not told (") and cell.color is None for cell in panda)
+    assert all(cell.text.startswith("not shown (") and cell.color is None for cell in panda)
     assert [(cell.text[:17], cell.color) for cell in ur5e] == [("operational_space", 1), ("computed_torque -", 0)]
     assert "8 pairs show no difference in" in shown.caption
 
@@ -176,17 +176,17 @@ def test_what_differs_with_the_question_is_named():
     keys = ["a", "b", "c", "d"]
     found = [Difference(key, ("controller",), [("computed_torque", "1"), ("operational_space", "2")]) for key in keys]
     subject = replace(plain, measurements=replace(plain.measurements, differences=found))
-    (told,) = causes(subject, find_answers(subject))
-    assert told == "a, b, c and 1 more vary with controller and may be the cause: see Also differs."
+    (text,) = causes(subject, find_answers(subject))
+    assert text == "a, b, c and 1 more vary with controller and may be the cause: see Also differs."
 
 
 def test_what_is_the_same_for_each_law_is_told():
     plain = sweep(agreeing)
     configs = [({"controller": {"natural_frequency": 20.0 + (cell == 1), "period": 0.01}, "trajectory": {"kind": "a"},
                  "plant": {"step": 1e-3}, "seed": 0}, np.array([cell])) for cell in range(4)]  # fmt: skip
-    told = made_equal(replace(plain, measurements=replace(plain.measurements, configs=configs)))
-    assert told.startswith("The same for each value of controller: period, plant step, path")
-    assert told.endswith("; not the same: gains.")
+    text = made_equal(replace(plain, measurements=replace(plain.measurements, configs=configs)))
+    assert text.startswith("The same for each value of controller: period, plant step, path")
+    assert text.endswith("; not the same: gains.")
 
 
 def test_too_few_repetitions_say_what_they_cannot_show_and_name_no_cell():
@@ -216,7 +216,7 @@ def test_what_too_few_pairs_cannot_answer_is_left_out_with_one_line():
     axes = {"noise.position": [1e-4 * place for place in range(1, 8)], "controller": ["a", "b"]}
     answers = find_answers(sweep(lambda noise, law: 10.0 + law + 0.01 * drawn(8, law, noise), axes=axes))
     assert sentences(answers) == ["8 pairs are too few for 8 comparisons: 9 would do."]
-    assert short_table(answers)[1] == [["largest tracking error", "7 conditions", "", "", "not told in 7"]]
+    assert short_table(answers)[1] == [["largest tracking error", "7 conditions", "", "", "not shown in 7"]]
     (part,) = pairs_section(answers).sections
     assert [block.text for block in part.blocks] == ["8 comparisons have too few pairs (8): 9 would do."]
 
@@ -224,9 +224,9 @@ def test_what_too_few_pairs_cannot_answer_is_left_out_with_one_line():
 def test_of_several_values_the_first_six_are_told():
     laws = ["a", "b", "c", "d", "e", "f", "g", "h", "i"]
     subject = sweep(lambda law: 1.0 + law + drawn(20, law) / 100.0, axes={"controller": laws})
-    told = sentences(find_answers(subject))
-    assert [text.split(" than with ")[1][0] for text in told[:6]] == ["b", "c", "d", "e", "f", "g"]
-    assert told[6] == "2 more are in the tables."
+    lines = sentences(find_answers(subject))
+    assert [text.split(" than with ")[1][0] for text in lines[:6]] == ["b", "c", "d", "e", "f", "g"]
+    assert lines[6] == "2 more are in the tables."
     assert in_short(subject).startswith("largest tracking error: medians from ")
 
 

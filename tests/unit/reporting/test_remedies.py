@@ -1,4 +1,4 @@
-"""Remedies of failures: the largest value that finishes, beside the bound of the law."""
+"""Remedies of failures: the largest value that finishes, and the bound of the law."""
 
 from dataclasses import replace
 
@@ -22,9 +22,9 @@ def swept(failed, axes=AXES, ratios=None):
     return choose(replace(sample, statuses=statuses, caveats=caveats))
 
 
-def test_the_largest_stable_value_stands_beside_the_bound_of_the_law():
-    (told,) = remedies(swept(range(2, 8), ratios={4: 3.0, 5: 3.0, 6: 10.0, 7: 10.0}))
-    assert told == (
+def test_the_largest_stable_value_has_the_bound_of_the_law():
+    (text,) = remedies(swept(range(2, 8), ratios={4: 3.0, 5: 3.0, 6: 10.0, 7: 10.0}))
+    assert text == (
         f"{FREQUENCY}: stable up to 30, fails at 100 (the velocity loop is stable below 100, if no torque is at its "
         "limit)."
     )
@@ -37,8 +37,8 @@ def test_the_factor_is_a_range_over_the_failed_cells():
 
 
 def test_boundaries_that_differ_are_told_with_their_condition():
-    (told,) = remedies(swept([2, 4, 5, 6, 7]))
-    assert told == (
+    (text,) = remedies(swept([2, 4, 5, 6, 7]))
+    assert text == (
         f"{FREQUENCY}: stable up to 30, fails at 100 at controller=a; stable up to 100, fails at 300 at controller=b."
     )
 
