@@ -1,8 +1,7 @@
 """Compare runs or sweeps, the first with each of the others.
 
 Sweeps are compared by cell and repetition. With one sweep, it compares the values of an axis: --by, else its question,
-such as the controller. For a run and a recording of a real arm (CSV or ROS bag) it writes a report in reports/ and
-prints its folder.
+such as the controller. For a run and a recording of a real arm it writes a report in reports/ and prints its folder.
 
 Example: runner compare latest --by controller --within robot
 """
@@ -24,6 +23,8 @@ if TYPE_CHECKING:
     from runner.recordings.compare import RecordingComparison
     from runner.store import Run, Sweep
 
+_LOGS = (".csv", ".tsv", ".txt", ".log", ".parquet", ".zip", ".bag", ".mcap", ".db3")  # a missing file is called a log
+
 
 def add_arguments(parser: Parser) -> None:
     """Add the arguments."""
@@ -32,7 +33,7 @@ def add_arguments(parser: Parser) -> None:
         nargs="+",
         type=Stored("run", "sweep", other=_is_recording),
         metavar="DIR",
-        help="runs, sweeps, latest, a CSV file or a ROS bag",
+        help="runs, sweeps, latest, or a log of an arm",
     )
     parser.add_shared(
         metrics="metrics (default: five; all with --all or --json)",
@@ -159,9 +160,11 @@ def _explain_mixture(run: "Run", sweep: "Sweep") -> str:
 def _is_recording(path: Path) -> bool:
     if kind_of(path):
         return False
-    from runner.recordings import is_bag
+    if not path.is_dir():
+        return path.is_file() or path.suffix.lower() in _LOGS
+    from runner.recordings.files import is_log_folder
 
-    return path.suffix.lower() == ".csv" or is_bag(path)
+    return is_log_folder(path)
 
 
 def _seconds(text: str) -> float:
