@@ -27,6 +27,8 @@ if TYPE_CHECKING:
 
 _FILE = "sweep.json"
 _RUNS = "runs.bin"  # hashes of the runs of a grid, 12 bytes for each cell
+QUESTION = "question.json"
+"""File of a sweep with the axis that a user asked about."""
 _AT_ONCE = 10_000  # rows
 _REMEDY = "the sweep's command writes it again"
 _NO_SPEC: "Mapping[str, Bound]" = {}
@@ -43,6 +45,7 @@ class Sweep:
         command: Command that starts or resumes the sweep.
         spec: Bounds on metrics, against which the runs are evaluated instead of their own; empty for none.
         history: Bounds of all its commands, each with the date of the first command that had it.
+        question: Axis that a user asked about last; empty for the one that its axes suggest.
     """
 
     folder: Path
@@ -51,6 +54,7 @@ class Sweep:
     command: str
     spec: "Mapping[str, Bound]" = field(default_factory=dict)
     history: "Histories" = field(default_factory=dict)
+    question: str = ""
 
     @property
     def continuation(self) -> str:
@@ -231,7 +235,12 @@ def open_sweep(folder: Path) -> Sweep:
     place = folder.resolve()
     if place.parent.name == "sweeps" and _name(rows) != place.name:
         raise DamagedError(f"cannot read {path}: it is of another sweep than its folder is named after; {_REMEDY}")
-    return Sweep(folder, overrides, hashes, command, *_read_spec(path, content))
+    return Sweep(folder, overrides, hashes, command, *_read_spec(path, content), _read_question(folder))
+
+
+def _read_question(folder: Path) -> str:
+    path = folder / QUESTION
+    return str(read_json(path, "`runner report SWEEP --by AXIS` writes it again")["axis"]) if path.exists() else ""
 
 
 def _read_spec(path: Path, content: Mapping[str, Any]) -> "tuple[dict[str, Bound], Histories]":

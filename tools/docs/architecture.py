@@ -5,6 +5,7 @@
 
 import ast
 import html
+import re
 import tomllib
 from collections.abc import Iterator
 from pathlib import Path
@@ -53,6 +54,9 @@ Runs of a study become a figure by the same chapter, report and page, and by the
 - figure: `runner/study/prose/compared.py`, `runner/reporting/charts/figure.py`,
   `runner/reporting/charts/interactive.py`
 """
+_SUMMARY = re.compile(r'r?"""(.*?)(?:"""|\n)')
+_QUOTED = re.compile(r'"""[\s\S]*?"""')
+_IMPORT = re.compile(r"^ *((?:from [\w.]+ )?import (?:\([^)]*\)|.*))$", re.MULTILINE)
 _ROW, _TOP, _NAME, _TEXT, _WIDTH = 26, 16, 100, 252, 860
 
 
@@ -65,8 +69,8 @@ def layers() -> list[str]:
 def summary(path: Path) -> str:
     """Return the first line of the docstring of a module, or of a package."""
     path = path / "__init__.py" if path.is_dir() else path
-    text = ast.get_docstring(ast.parse(path.read_text(encoding="utf-8"))) or "" if path.is_file() else ""
-    return text.partition("\n")[0]
+    found = _SUMMARY.match(path.read_text(encoding="utf-8")) if path.is_file() else None
+    return found[1] if found else ""
 
 
 def folder(layer: str) -> Path:
@@ -78,7 +82,8 @@ def imports(layer: str, known: list[str]) -> set[str]:
     """Return the packages that a package imports, those of imports that point up left out."""
     found = set()
     for path in folder(layer).rglob("*.py"):
-        for node in ast.walk(ast.parse(path.read_text(encoding="utf-8"))):
+        statements = _IMPORT.findall(_QUOTED.sub("", path.read_text(encoding="utf-8")))
+        for node in ast.parse("\n".join(statements)).body:
             names = [f"{node.module}.{each.name}" for each in node.names] if isinstance(node, ast.ImportFrom) else []
             names += [each.name for each in node.names] if isinstance(node, ast.Import) else []
             found |= {other for other in known for name in names if f"{name}.".startswith(f"{other}.")}
