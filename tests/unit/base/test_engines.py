@@ -13,7 +13,7 @@ from runner.config.validation import validate
 from runner.simulation.provenance import command
 
 
-@pytest.fixture(params=[True, False], ids=["with PyBullet", "without"])
+@pytest.fixture(params=[pytest.param(True, marks=pytest.mark.bullet), False], ids=["with PyBullet", "without"])
 def installed(request, monkeypatch):
     """A machine with PyBullet, or without."""
     monkeypatch.setattr(engines, "has_pybullet", lambda: request.param)
