@@ -149,8 +149,12 @@ def _options(group: str) -> str:
 
 
 def _of_kind(group: str, kind: str) -> Mapping[str, Any]:
-    """Return the values of the option named like a kind; a file of the root's package holds them below its group."""
-    values = _read(f"{group}/{kind}")
+    """Return the values of the option named like a kind, else of the group's usual one.
+
+    A file of the root's package holds them below its group.
+    """
+    own = (conf_dir() / group / f"{kind}.yaml").exists()
+    values = _read(f"{group}/{kind if own else _OPTION.get(group, 'none')}")
     return dict(values.get(group, values))
 
 
