@@ -120,6 +120,7 @@ def _with_diagonal_inertias(urdf: str) -> str:
     root = ET.fromstring(urdf)  # noqa: S314 - text from the runner, checked when it was read
     for link in root.findall("link"):
         turn_to_principal_axes(link)
+    ET.indent(root)  # Bullet breaks names and numbers in long lines
     return ET.tostring(root, encoding="unicode")
 
 
