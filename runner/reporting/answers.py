@@ -188,7 +188,7 @@ class Answer(Asked):
 
     @property
     def is_answerable(self) -> bool:
-        """True if so many pairs can show a difference in so many comparisons."""
+        """True if the number of pairs can show a difference in the number of comparisons."""
         return bool(self.limit) or self.is_lost or self.comparison.exact or self.equal or self.interval is not None
 
     @property
@@ -320,7 +320,7 @@ class Answer(Asked):
         return max(0, decimals)
 
     def _rounded(self, value: float) -> float:
-        """Return a value as it is printed, in SI units; the value itself if all its digits are rounded away."""
+        """Return the printed value in SI units; the value itself if all its digits are rounded away."""
         return round(self.scale[0] * value, self._decimals) / self.scale[0] or value
 
     def _number(self, value: float) -> str:

@@ -37,7 +37,7 @@ def sentences(answers: Sequence[Answer]) -> list[str]:
 
 
 def price(one: Answer, answers: Sequence[Answer]) -> str:
-    """Return what the smaller value costs in the second metric of the first screen, to end a sentence; or ""."""
+    """Return the cost of the smaller value in the second metric of the first screen, to end a sentence; or ""."""
     same = (each for each in answers if each.rank == 1 and (each.at, each.names) == (one.at, one.names))
     cost = next(same, None)
     if cost is None or not one.sign:
@@ -52,7 +52,7 @@ def price(one: Answer, answers: Sequence[Answer]) -> str:
 
 
 def unanswerable(left_out: Sequence[Answer]) -> str:
-    """Return how many repetitions answer the comparisons that are left out because of too few pairs."""
+    """Return the number of repetitions that answer the comparisons left out because of too few pairs."""
     needed = max(fewest_pairs(min(one.level, ALPHA / max(one.family, 1))) for one in left_out)
     are = "comparison has" if len(left_out) == 1 else "comparisons have"
     return f"{len(left_out)} {are} too few pairs ({max(one.comparison.n for one in left_out)}): {needed} would do."
@@ -82,7 +82,7 @@ def _headline(found: Sequence[Condition]) -> str:
 
 
 def _tally(found: Sequence[Condition]) -> str:
-    """Return how many conditions have which answer, such as "a is smaller in 2 of 4 (12 to 31 %), not shown in 2"."""
+    """Return the number of conditions by answer, such as "a is smaller in 2 of 4 (12 to 31 %), not shown in 2"."""
     texts = []
     for name, count in Counter(each.winner for each in found if each.winner).most_common():
         shares = [float(each.share.split()[0]) for each in found if each.winner == name and _is_plain(each.share)]

@@ -91,7 +91,7 @@ def axis_effects(
 
 
 def _effect(names: tuple[str, ...], y: FloatArray, others: Sequence[Levels], level: Levels) -> Effect:
-    """Return what a factor explains beyond other factors; all levels have shape (n,)."""
+    """Return the effect of a factor beyond other factors; all levels have shape (n,)."""
     if len(y) < 2:
         return Effect(0.0, names, "fewer than two values")
     centred = y - y.mean()

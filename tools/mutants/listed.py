@@ -134,13 +134,8 @@ MUTANTS = [
     *_of(
         "statistics/effects.py",
         "unit/statistics/test_effects.py",
-        ("p without its + 1", "(1 + as_large) / (1 + self._permutations)", "as_large / self._permutations"),
-        (
-            "p with its + 1 only above",
-            "(1 + as_large) / (1 + self._permutations)",
-            "(1 + as_large) / self._permutations",
-        ),
-        ("ties taken for smaller", ">= observed * (1 - 1e-9)", "> observed"),
+        ("a factor without the others", "_basis(columns - base @ (base.T @ columns))", "_basis(columns)"),
+        ("the share of what is left", "return 1.0 - float(np.sum((y - means", "return float(np.sum((y - means"),
     ),
     *_of(
         "statistics/interval.py",

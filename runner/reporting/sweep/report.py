@@ -156,7 +156,7 @@ def _title(subject: Subject) -> str:
 
 
 def _abstract(subject: Subject, sweep: Sweep, answers: Sequence[Answer], first: Sequence[str]) -> list[str]:
-    """Return what failed and the answer, then what may mislead: a paragraph each."""
+    """Return the failures and the answer, then the warnings: a paragraph each."""
     measurements = subject.measurements
     cells, failed = len(measurements.hashes), measurements.failed
     texts = []

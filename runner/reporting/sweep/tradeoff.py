@@ -19,7 +19,7 @@ _MOST_ROWS = 12
 def pair(subject: Subject) -> tuple[str, str] | None:
     """Return the two metrics that are traded off: the first of the report, and what it costs, or its second.
 
-    None if an axis is a condition, such as the noise: nobody chooses it, so that a front over it says nothing.
+    None if an axis is a condition, such as the noise: no designer chooses it, so that a front over it says nothing.
     """
     if any(is_condition(axis.name) for axis in subject.axes):
         return None

@@ -97,7 +97,7 @@ def test_commands_read_it(cli, many):
     report = cli("report", many.folder, "--format", "html").folder / "report.html"
     text = report.read_text(encoding="utf-8")
     assert f"Metrics over {MANY} repetitions; levels are quantiles" in text
-    assert "99 %" in text
+    assert "99\N{NO-BREAK SPACE}%" in text
 
 
 def test_python_reads_it(many):

@@ -179,7 +179,7 @@ def test_cells_stand_in_order():
     (panel,) = distributions.section(subject).blocks[1].panels
     assert (np.diff(panel.series[0].y) >= 0).all()
     assert panel.series[0].runs == subject.hashes(subject.ranked)
-    assert len(distributions.section(two_axes()).blocks) == 1  # noise is a condition, which nobody orders
+    assert len(distributions.section(two_axes()).blocks) == 1  # noise is a condition, which no designer orders
 
 
 def test_a_figure_without_a_point_is_not_drawn():

@@ -40,7 +40,7 @@ def test_an_error_is_traded_off_against_its_cost():
 
 
 def test_no_front_runs_over_a_condition():
-    assert pair(two_axes()) is None  # over the noise, which nobody chooses
+    assert pair(two_axes()) is None  # over the noise, which no designer chooses
 
 
 def test_the_section_lists_the_front():
