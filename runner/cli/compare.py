@@ -38,7 +38,7 @@ def add_arguments(parser: Parser) -> None:
     parser.add_shared(
         metrics="metrics (default: five; all with --all or --json)",
         json="print JSON, one object for each row",
-        by="one sweep: compare the values of these axes (default: its question); the first becomes its question",
+        by="one sweep: axes, the first its question from now on",
         within="within each level of these axes (default: over all, then the strongest)",
         where="only cells with this value of a key; repeat for more",
         output="recording: folder of the report",

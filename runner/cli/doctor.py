@@ -1,13 +1,4 @@
-"""Check if your robot or your log fits.
-
-Each finding is one line. `refused` bars the robot. `fixed` was changed in the copy that --output writes; the line has
-the old and the new value. A `note` needs no change. The config folder holds the robot's YAML and a copy of its file; an
-MJCF becomes a URDF if something is fixed. A robot whose links have no mass gets joint position commands. Exit code 2:
-no config can be written.
-
-Of logs of an arm it lists the columns and proposes a meaning for each with the reason. With --robot and --output it
-writes a column map and a motion, and prints the line that runs and compares. `ask` needs an answer in the column map;
-exit code 1: no motion before that.
+"""Check if your robot or log fits; --output writes its config, or its map and motion. `refused` and `ask` bar it.
 
 Example: runner doctor arm.urdf --output mine
 """
@@ -31,17 +22,17 @@ def add_arguments(parser: Parser) -> None:
         "files", type=Path, nargs="+", metavar="FILE", help="a URDF or an MJCF, or logs: files or folders"
     )
     parser.add_argument("--tip", metavar="FRAME", help="link that is the tip (default: where the arm ends)")
-    parser.add_argument("--name", metavar="NAME", help="name of the robot (default: from the file or its folder)")
+    parser.add_argument("--name", metavar="NAME", help="name of the robot (default: that of the file)")
     parser.add_argument(
         "--package-path", action="append", default=[], type=Path, metavar="DIR",
-        help="folder with the ROS packages of its meshes; repeat for more",
+        help="folder with its ROS packages; repeatable",
     )  # fmt: skip
     parser.add_argument("--robot", metavar="ROBOT", help="log: the robot, as in `runner robot=ROBOT`")
-    parser.add_argument("--topic", metavar="TOPIC", help="log: topic of the joint states, if a bag has several")
-    parser.add_argument("--episode", type=int, metavar="N", help="log: episode of a data set (default: the longest)")
-    parser.add_argument("--columns", type=Path, metavar="FILE", help="log: column map to take instead of a proposal")
+    parser.add_argument("--topic", metavar="TOPIC", help="log: topic of the joint states")
+    parser.add_argument("--episode", type=int, metavar="N", help="log: episode (default: the longest)")
+    parser.add_argument("--columns", type=Path, metavar="FILE", help="log: your column map")
     parser.add_shared("config_dir", output="folder to write (default: nothing is written)")
-    parser.add_formats(_FORMATS, "config: a config folder; html: report.html with a drawing (default: config)")
+    parser.add_formats(_FORMATS, "config (default), html: a report")
 
 
 def run(options: Namespace) -> int:

@@ -29,7 +29,7 @@ def test_topics(tab):
 
 
 def test_options_are_those_of_the_command(tab):
-    assert tab("report --") == ["--format", "--help", "--metrics", "--output", "--plugin", "--quiet"]
+    assert tab("report --") == ["--by", "--format", "--help", "--metrics", "--output", "--plugin", "--quiet"]
     assert tab("tune robot=macro --min") == ["--minimize"]
     assert tab("study diff --") == ["--all", "--help", "--json"]
 
