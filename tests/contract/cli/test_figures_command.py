@@ -21,7 +21,7 @@ def test_the_figures_of_a_run_lie_beside_its_report(cli, copy_run):
 
 
 def test_a_figure_of_a_sweep_is_made_again_in_the_width_asked_for(cli, copy_sweep, tmp_path):
-    swept = copy_sweep("goal", "other seed")
+    swept = copy_sweep("goal", "noise")
     ending = cli("figures", swept, "--width", "double", "--output", tmp_path / "papers", "--only", "share")
     assert ending.folder == tmp_path / "papers"
     (name,) = ending.out.splitlines()[:-1]
