@@ -44,7 +44,7 @@ def test_the_textbooks_mass_matrix_is_that_of_its_kinetic_energy(runs: Mapping[s
 def test_a_changed_arm_is_found_to_be_another(runs: Mapping[str, Run]) -> None:
     """The comparison distinguishes an engine with another mass from Pinocchio."""
     run = runs["open/planar/MuJoCo Euler/0.001"]
-    heavier = run.urdf.replace('<mass value="1"', '<mass value="1.001"', 1)
+    heavier = run.urdf.replace('<mass value="1.0"', '<mass value="1.001"', 1)
     assert heavier != run.urdf
     least = run.config["plant"]["min_inertia"]
     other = Mujoco(heavier, run.model, 1e-3, 1, "euler", least)
