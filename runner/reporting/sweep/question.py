@@ -90,7 +90,8 @@ def causes(subject: Subject, answers: Sequence[Answer]) -> list[str]:
     along = [found.key for found in subject.measurements.differences if axis is not None and axis.name in found.axes]
     if axis is None or not along or not answers:
         return []
-    return [f"{few(along, _MOST_KEYS)} vary with {axis.name} and may be the cause: see Also differs."]
+    verb = "varies" if len(along) == 1 else "vary"
+    return [f"{few(along, _MOST_KEYS)} {verb} with {axis.name} and may be the cause: see Also differs."]
 
 
 def made_equal(subject: Subject) -> str:
