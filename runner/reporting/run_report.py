@@ -17,9 +17,9 @@ from runner.metrics.caveats.versions import changes_since
 from runner.metrics.rounding import SENSITIVE, STEP
 from runner.reporting.document import Block, Code, Cover, Document, Notice, Provenance, Section, Table, Text
 from runner.reporting.figures import cover, desired_motion, last_moments, playback, torque_and_error, until_failure
-from runner.reporting.limiting_joint import nearest_to_limit
 from runner.reporting.markup import literal
 from runner.reporting.metric_titles import capital, key_metrics, title
+from runner.reporting.nearest_limit import nearest_to_limit
 from runner.reporting.plant_step import describe_plant, percent
 from runner.reporting.spec_blocks import spec_abstract, spec_blocks
 from runner.reporting.sweep.stability import UNSTABLE

@@ -13,8 +13,8 @@ from runner.reporting import outline
 from runner.reporting.comparison.runs import runs_document
 from runner.reporting.document import Code, Curves, Notice, Playback, Provenance, Table, Text
 from runner.reporting.formulas import faulty
-from runner.reporting.limiting_joint import nearest_to_limit
 from runner.reporting.metric_titles import title
+from runner.reporting.nearest_limit import nearest_to_limit
 from runner.reporting.render import write_report
 from runner.reporting.run_report import provenance, run_document
 from runner.reporting.words import PLANT
