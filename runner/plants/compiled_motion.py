@@ -301,6 +301,13 @@ class CompiledStep(ArmCode):
         state[:] = own
 
 
+def links_torques(constants: ArmConstants, q: Vector, v: Vector, tau: Vector, at: Slots) -> Vector:
+    """Return the torques of links without armature that have the accelerations of an arm with armature."""
+    ddq = Mover(ArmAlgebra(constants), 0, len(q), len(q), at).acceleration(q, v, tau)
+    motors = [times(body.armature, a) for body, a in zip(constants.bodies, ddq, strict=True)]
+    return subtract(tau, motors)
+
+
 class CompiledLinksTorque(ArmCode):
     """Compiled link torques, without the torques A ddq of the armature; see runner/plants/bullet.py."""
 
@@ -312,9 +319,7 @@ class CompiledLinksTorque(ArmCode):
         gravity, _, constants = self._scalars(at.number)
         q, v = (at.take(STATE, n)[1] for _ in range(2))
         first, tau = at.take(ROWS, n)
-        ddq = Mover(ArmAlgebra(constants._replace(gravity=gravity)), 0, n, n, at).acceleration(q, v, tau)
-        motors = [times(body.armature, a) for body, a in zip(constants.bodies, ddq, strict=True)]
-        return [put(ROWS, first, subtract(tau, motors))]
+        return [put(ROWS, first, links_torques(constants._replace(gravity=gravity), q, v, tau, at))]
 
     def at(self, q: FloatArray, v: FloatArray, tau: FloatArray) -> FloatArray:
         """Return the torques of the links, shape (nq,), in N m; valid until the next call."""

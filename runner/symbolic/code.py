@@ -12,6 +12,7 @@ ARRAYS = (GIVEN, ROWS, STATE, SCRATCH, PARS, TABLE)
 INTEGERS = ("first", "end", "last", "delay", "steps")
 _COMPARISONS = {"less": "fcmp olt", "equal": "fcmp oeq"}
 _FUNCTIONS = ("sqrt", "fabs", "rint", "floor")
+_LIBRARY = ("sin", "cos")  # of the C library
 
 
 @dataclass(frozen=True)
@@ -69,7 +70,7 @@ class _Writer:
         self._lines: list[str] = []
         self._count, self._label = 0, "entry"
         self._rows = {space: f"%{space}" for space in (STATE, SCRATCH, PARS)}
-        self._used: dict[str, None] = {}
+        self._used: dict[str, None] = {}  # declarations of functions
 
     def write(self, ticks: Sequence[Part], between: Sequence[Part]) -> str:
         for index, (name, kind) in enumerate([*((n, "ptr") for n in ARRAYS), *((n, "i64") for n in INTEGERS)]):
@@ -89,8 +90,7 @@ class _Writer:
         self._lines.append(f"  br label %{moved}")
         self._begin(moved)
         self._close(head, k, "%end", None)
-        declared = [f"declare {self._number} @llvm.{name}({self._number})" for name in self._used]
-        return "\n".join([*declared, "define void @run(ptr %frame) {", "entry:", *self._lines, "  ret void", "}", ""])
+        return "\n".join([*self._used, "define void @run(ptr %frame) {", "entry:", *self._lines, "  ret void", "}", ""])
 
     def _parts(self, parts: Sequence[Part]) -> None:
         for part in parts:
@@ -133,9 +133,23 @@ class _Writer:
             return self._line(f"xor {truth} {operands[0]}, {'true' if self._lanes == 1 else 'splat (i1 true)'}")
         if operation in _FUNCTIONS:
             name = f"{operation}.{'f64' if self._lanes == 1 else f'v{self._lanes}f64'}"
-            self._used[name] = None
+            self._used[f"declare {number} @llvm.{name}({number})"] = None
             return self._line(f"call {number} @llvm.{name}({number} {operands[0]})")
+        if operation in _LIBRARY:
+            return self._call(operation, operands[0])
         return self._line(f"{operation} {number} {', '.join(operands)}")
+
+    def _call(self, name: str, operand: str) -> str:
+        """Call a function of the C library, run by run."""
+        self._used[f"declare double @{name}(double)"] = None
+        if self._lanes == 1:
+            return self._line(f"call double @{name}(double {operand})")
+        found = "poison"
+        for lane in range(self._lanes):
+            own = self._line(f"extractelement {self._number} {operand}, i64 {lane}")
+            value = self._line(f"call double @{name}(double {own})")
+            found = self._line(f"insertelement {self._number} {found}, double {value}, i64 {lane}")
+        return found
 
     def _constant(self, value: float) -> str:
         bits = struct.unpack(">Q", struct.pack(">d", value))[0]
