@@ -64,9 +64,9 @@ class PlantFeatures(Features):
             end of the step.
         default_step: Function of the control tick, in s, and the number of stages. It returns the integration step, in
             s, for a config without step.
-        motion: Function of the config and the robot. It returns the rigid bodies with friction that the plants
-            integrate by the classical Runge-Kutta scheme, or None if the plants model more. Runs of such bodies may be
-            compiled.
+        motion: Function of the config, the robot, the step in s, and the steps in a tick. It returns the motion of the
+            plants for compiled runs: rigid bodies with friction by the classical Runge-Kutta scheme, or an arm by
+            Bullet's step. It returns None if the plants move otherwise.
         modes: Function of the config, the robot and a configuration. It returns the modes of a flexible robot with its
             motors held, by frequency; see find_modes.
         moves_exactly: Function of the config. It returns True if a step integrates positions exactly under a constant
@@ -75,7 +75,7 @@ class PlantFeatures(Features):
 
     IMPLICIT_CONTACT: bool = False
     default_step: Callable[[float, int], float] = lambda tick, stages: tick
-    motion: Callable[[Any, Robot], Motion | None] = lambda config, robot: None
+    motion: Callable[[Any, Robot, float, int], Motion | None] = lambda config, robot, step, steps_per_tick: None
     modes: Callable[[Any, Robot, FloatArray], list[Mode]] = lambda config, robot, q: []
     moves_exactly: Callable[[Any], bool] = lambda config: False
 
@@ -141,13 +141,13 @@ class Plants(Registry[PlantConfig, [Robot, float, int], Plant]):
             raise ConfigError(engines.bullet_missing())
         return super().module(kind)
 
-    def motion(self, config: PlantConfig, robot: Robot) -> Motion | None:
-        """Return the motion that a plant integrates by the Runge-Kutta scheme, or None; see PlantFeatures.
+    def motion(self, config: PlantConfig, robot: Robot, step: float, steps_per_tick: int) -> Motion | None:
+        """Return the motion of a plant for compiled runs, or None; see PlantFeatures.
 
         Raises:
             ConfigError: see find_motion.
         """
-        return self.features(config.kind).motion(config, robot)
+        return self.features(config.kind).motion(config, robot, step, steps_per_tick)
 
     def modes(self, config: PlantConfig, robot: Robot, q: FloatArray) -> list[Mode]:
         """Return the modes of a plant about a configuration, motors held; none if it is rigid."""

@@ -1,6 +1,7 @@
 """PyBullet plant: Featherstone's articulated-body algorithm with semi-implicit Euler integration."""
 
 import struct
+from dataclasses import replace
 from typing import Literal
 
 import numpy as np
@@ -11,12 +12,12 @@ from runner.base.errors import ConfigError
 from runner.base.lazy_modules import pin, pybullet
 from runner.plants.bullet_servers import SERVERS
 from runner.plants.compiled_motion import CompiledLinksTorque
-from runner.plants.decoupled import TorquePlantConfig, assemble_flexible, assemble_plant
+from runner.plants.decoupled import Motion, TorquePlantConfig, assemble_flexible, assemble_plant, find_motion
 from runner.plants.decoupled import default_step as default_step
 from runner.plants.flexible_config import FlexibleJointsConfig
 from runner.plants.flexible_config import modes as modes
 from runner.plants.plant import Plant
-from runner.plants.stepped_bullet import SteppedBullet, find_step
+from runner.plants.stepped_bullet import SteppedBullet, find_motion_of, find_step
 from runner.robots.model import RobotModel
 from runner.robots.mounting import TOOL_MOUNT
 from runner.robots.robot import Robot
@@ -259,6 +260,18 @@ def build(config: BulletConfig, robot: Robot, step: float, steps_per_tick: int) 
         return assemble_flexible(*parts, lambda links: make_arm(robot.urdf, links, step, 1))
     tick = step * steps_per_tick
     return assemble_plant(config, robot, tick, lambda urdf, model: make_arm(urdf, model, step, steps_per_tick))
+
+
+def motion(config: BulletConfig, robot: Robot, step: float, steps_per_tick: int) -> Motion | None:
+    """Return the motion of one arm by Bullet's step; None with springs, friction, several arms, or without the step."""
+    if config.flexible_joints is not None:
+        return None
+    found = find_motion(robot, config)
+    own = found.arms[0]
+    bullet = None
+    if len(found.arms) == 1 and not own.friction.acts.any():
+        bullet = find_motion_of(own.urdf, own.model, step, steps_per_tick)
+    return None if bullet is None else replace(found, bullet=bullet)
 
 
 def make_arm(urdf: str, model: RobotModel, step: float, steps_per_tick: int) -> Plant:

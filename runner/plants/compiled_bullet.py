@@ -59,7 +59,7 @@ def bullet_pattern(arm: BulletArm, model: RobotModel) -> str:
 def expressed_steps(
     arm: BulletArm, armature: ArmConstants | None, acting: Vector, gravity: Vector, step: Value, at: Slots
 ) -> list[Part]:
-    """Return the code of the steps of a tick, which leaves the state as it is if a joint reaches a limit.
+    """Return the code of the steps of a tick, which does not change the state if a joint reaches a limit.
 
     A new slot of the state, after those in use, becomes 1 then, and stays.
 

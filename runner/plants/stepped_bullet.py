@@ -14,6 +14,7 @@ from runner.base.errors import SimulationError
 from runner.plants.agreement import has_bits_of_bullet
 from runner.plants.bullet_links import read_arm
 from runner.plants.compiled_bullet import CompiledBullet
+from runner.plants.decoupled import BulletMotion
 from runner.plants.plant import Plant
 from runner.robots.model import RobotModel
 from runner.robots.mounting import TOOL_MOUNT
@@ -27,7 +28,7 @@ class SteppedBullet(Plant):
     """An arm of PyBullet, moved by its compiled step.
 
     PyBullet moves the arm from the tick in which a joint reaches a limit until the next reset, and always if there is a
-    wall. The motion has the same bits as that of PyBullet alone.
+    wall. The motion has the bits of PyBullet's own steps.
 
     Args:
         code: Compiled step.
@@ -101,9 +102,15 @@ class SteppedBullet(Plant):
 
 
 def find_step(urdf: str, model: RobotModel, step: float, steps_per_tick: int) -> CompiledBullet | None:
-    """Return the compiled step of an arm; None if PyBullet moves it alone.
+    """Return the compiled step of an arm; None if PyBullet moves it. See find_motion_of."""
+    found = find_motion_of(urdf, model, step, steps_per_tick)
+    return None if found is None else CompiledBullet(model, found.arm, found.step)
 
-    PyBullet alone moves an arm with a tool sensor, an arm whose step is not known, and ticks that it does not divide as
+
+def find_motion_of(urdf: str, model: RobotModel, step: float, steps_per_tick: int) -> BulletMotion | None:
+    """Return the motion of an arm by Bullet's step; None if PyBullet moves it.
+
+    PyBullet moves an arm with a tool sensor, an arm whose step is not known, and ticks that it does not divide as
     asked. On the first use of an arm, its step is compared with PyBullet; see has_bits_of_bullet.
 
     Args:
@@ -116,15 +123,13 @@ def find_step(urdf: str, model: RobotModel, step: float, steps_per_tick: int) ->
         ConfigError: if PyBullet cannot load the text.
     """
     arm = find_arm(urdf, model)
-    if arm is None:
-        return None
     at_once = 1 if model.armature.any() else steps_per_tick
-    return CompiledBullet(model, arm, substep(step, at_once)) if divides(step, at_once) else None
+    return BulletMotion(arm, substep(step, at_once)) if arm is not None and divides(step, at_once) else None
 
 
 @lru_cache(maxsize=64)
 def find_arm(urdf: str, model: RobotModel) -> BulletArm | None:
-    """Return an arm as Bullet has it, if its compiled step has the bits of PyBullet; else None. See find_step."""
+    """Return an arm as Bullet has it, if its compiled step has the bits of PyBullet; else None. See find_motion_of."""
     if not evaluator() or model.nq > MOST_JOINTS or f'"{TOOL_MOUNT}"' in urdf:
         return None
     arm = read_arm(urdf, model.joint_names)
@@ -154,7 +159,7 @@ def _is_trusted(urdf: str, model: RobotModel, arm: BulletArm) -> bool:
         found = has_bits_of_bullet(urdf, model, arm, np.random.default_rng(0))
         write_answer(key, found)
     if not found:
-        _tell("the compiled step of plant=bullet differs from the installed PyBullet, which moves the arm alone")
+        _tell("the compiled step of plant=bullet differs from the installed PyBullet, which moves the arm")
     return found
 
 

@@ -85,15 +85,15 @@ def test_the_links_are_those_that_bullet_reads(name, checked_config):
 
 
 def plants(urdf, model, steps=2):
-    """Return the same arm by its step and in PyBullet alone."""
-    stepped, alone = arm_of(urdf, model, STEP, steps), Bullet(urdf, model, STEP, steps)
+    """Return the same arm by its step and by PyBullet's own steps."""
+    stepped, other = arm_of(urdf, model, STEP, steps), Bullet(urdf, model, STEP, steps)
     assert isinstance(stepped, SteppedBullet)
-    return stepped, alone
+    return stepped, other
 
 
 @pytest.mark.costs(2)
 @pytest.mark.parametrize("name", ["macro", "so101", "xarm7"])
-def test_a_hand_over_at_a_limit_has_the_bits_of_bullet_alone(name, checked_config):
+def test_a_hand_over_at_a_limit_has_the_bits_of_bullet(name, checked_config):
     """Another gravity, a joint at its limit and away from it, and a second use after a reset."""
     arm = checked_config(f"robot={name}", "robot.armature=0").arm
     model, generator = arm.model, np.random.default_rng(1)
@@ -123,15 +123,15 @@ def limited(urdf):
     return urdf.replace('"-1000.0"', '"-3.0"').replace('"1000.0"', '"3.0"')
 
 
-def test_a_run_with_a_wall_is_that_of_bullet_alone(checked_config, monkeypatch):
+def test_a_run_with_a_wall_is_that_of_bullet(checked_config, monkeypatch):
     from runner.simulation.run import simulate_repetition
 
     overrides = ("robot=meca500", "environment=wall", "controller=operational_space", "duration=0.1", "plant=bullet")
     with_step = simulate_repetition(checked_config(*overrides), 0)
     monkeypatch.setattr("runner.plants.bullet.find_step", lambda *_: None)
-    alone = simulate_repetition(checked_config(*overrides), 0)
-    assert np.array_equal(with_step.q, alone.q)
-    assert np.array_equal(with_step.contact.load, alone.contact.load)
+    other = simulate_repetition(checked_config(*overrides), 0)
+    assert np.array_equal(with_step.q, other.q)
+    assert np.array_equal(with_step.contact.load, other.contact.load)
 
 
 def test_a_step_with_other_bits_is_not_used(checked_config, monkeypatch, capsys):
@@ -141,7 +141,7 @@ def test_a_step_with_other_bits_is_not_used(checked_config, monkeypatch, capsys)
     monkeypatch.setattr(stepped_bullet, "read_answer", lambda _: None)
     monkeypatch.setattr(stepped_bullet, "has_bits_of_bullet", lambda *_: False)
     assert find_step(arm.urdf, arm.model, STEP, 2) is None
-    assert "differs from the installed PyBullet, which moves the arm alone" in capsys.readouterr().err
+    assert "differs from the installed PyBullet, which moves the arm" in capsys.readouterr().err
     stepped_bullet.find_arm.cache_clear()
 
 
