@@ -2,14 +2,12 @@
 
 from collections.abc import Callable
 from dataclasses import dataclass
-from types import ModuleType
 from typing import Any, Literal, Protocol
 
 import numpy as np
 
-from runner.base import engines
 from runner.base.arrays import FloatArray
-from runner.base.errors import ConfigError, SimulationError
+from runner.base.errors import SimulationError
 from runner.plants.computation import EXACT, ComputationConfig
 from runner.plants.decoupled import Motion
 from runner.plants.flexible_config import FlexibleJointsConfig
@@ -40,14 +38,12 @@ class PlantOptions:
         computation: Delay and misses of commands.
         flexible_joints: Springs between motors and links; None for rigid joints.
         servo: Position servos of a torque plant, for controllers that command joint positions; None without servos.
-        in_place_of: Missing kind that the plant replaces; None if no kind is missing.
     """
 
     wrist_rotation: Literal["real", "parallel"] = "real"
     computation: ComputationConfig = EXACT
     flexible_joints: FlexibleJointsConfig | None = None
     servo: ServoConfig | None = None
-    in_place_of: str | None = None
 
 
 def options_of(config: PlantConfig) -> PlantOptions:
@@ -126,20 +122,6 @@ class Plants(Registry[PlantConfig, [Robot, float, int], Plant]):
     def features(self, kind: str) -> PlantFeatures:
         """Return the optional members of a kind's module."""
         return read_features(PlantFeatures, self.module(kind))
-
-    def names(self) -> list[str]:
-        """Return the known kinds, without bullet if PyBullet is missing; see Kinds."""
-        return [kind for kind in super().names() if kind != "bullet" or engines.has_pybullet()]
-
-    def module(self, kind: str) -> ModuleType:
-        """Return the module of a kind.
-
-        Raises:
-            ConfigError: see Kinds; also for bullet if PyBullet is missing.
-        """
-        if kind == "bullet" and not engines.has_pybullet():
-            raise ConfigError(engines.bullet_missing())
-        return super().module(kind)
 
     def motion(self, config: PlantConfig, robot: Robot, step: float, steps_per_tick: int) -> Motion | None:
         """Return the motion of a plant for compiled runs, or None; see PlantFeatures.

@@ -16,12 +16,15 @@ from runner.plants.bullet_links import read_arm
 from runner.plants.compiled_bullet import CompiledBullet
 from runner.plants.decoupled import BulletMotion
 from runner.plants.plant import Plant
+from runner.robots.description import find_urdf, read_urdf
 from runner.robots.model import RobotModel
 from runner.robots.mounting import TOOL_MOUNT
-from runner.symbolic.bullet_step import BulletArm
+from runner.symbolic.bullet_step import VERSION, BulletArm
 from runner.symbolic.cache import read_answer, write_answer
 from runner.symbolic.engine import MOST_JOINTS, evaluator, processor
 from runner.symbolic.program import source_digest
+
+_WHEEL = "3.2.7"  # of PyBullet, with the Bullet of the compiled step
 
 
 class SteppedBullet(Plant):
@@ -125,6 +128,18 @@ def find_motion_of(urdf: str, model: RobotModel, step: float, steps_per_tick: in
     arm = find_arm(urdf, model)
     at_once = 1 if model.armature.any() else steps_per_tick
     return BulletMotion(arm, substep(step, at_once)) if arm is not None and divides(step, at_once) else None
+
+
+def bullet_versions() -> dict[str, str]:
+    """Return the versions that name runs of plant=bullet: that of the compiled step.
+
+    That of an installed PyBullet is added if it contains another Bullet, and moves the built-in Macro by other bits.
+    """
+    own, found = {"bullet": VERSION}, engines.installed_versions(["pybullet"])
+    if found.get("pybullet", _WHEEL) == _WHEEL:
+        return own
+    urdf = read_urdf(find_urdf("macro.urdf"), {})
+    return own if find_arm(urdf, RobotModel(urdf, "tip")) is not None else own | found
 
 
 @lru_cache(maxsize=64)

@@ -27,6 +27,8 @@ from runner.symbolic.vectors import (
     transpose,
 )
 
+VERSION = "3.27"
+"""Version of Bullet."""
 _AXES = range(3)
 _ZERO: Vector = [0.0, 0.0, 0.0]
 _EPSILON = 2.0**-52  # Bullet does not divide by smaller joint inertias
