@@ -4,9 +4,12 @@ VENV := .venv
 BIN := $(VENV)/bin
 # A .venv that is there may have any version, unless PYTHON asks for one.
 ANY_VERSION := $(if $(filter file,$(origin PYTHON)),--any-version)
+# Processes that run tests; a worker that has none left takes those of another one.
+WORKERS ?= 2
+TESTS := $(BIN)/python -m pytest -n $(WORKERS) --dist worksteal
 
-.PHONY: install reproduce test test-pages test-study test-slow test-busy record test-lowest test-next test-wheel mutants coverage-map lint types docs
-.PHONY: pins release-notes bench checks clean
+.PHONY: install reproduce test test-changed test-pages test-study test-slow test-busy record test-lowest test-next test-wheel
+.PHONY: mutants coverage-map lint types docs pins release-notes bench checks clean
 
 install:
 	@$(PYTHON) .ci/install.py $(ANY_VERSION)
@@ -15,23 +18,31 @@ reproduce: install
 	$(BIN)/runner reproduce all
 
 test: install
-	$(BIN)/python -m pytest
+	$(TESTS)
+
+# The tests that a change since the commit BASE can affect, without one since the last commit; by `make coverage-map`.
+test-changed: install
+	$(BIN)/python -m tools.changed_tests $(BASE)
 
 # The README and the pages of docs/, followed command by command in a shell, the scripts that they show, and the built site.
 test-pages: install
-	$(BIN)/python -m pytest -m slow tests/end_to_end/test_pages.py tests/end_to_end/test_scripts_of_pages.py \
+	$(TESTS) -m slow tests/end_to_end/test_pages.py tests/end_to_end/test_scripts_of_pages.py \
 		tests/end_to_end/test_docs_site.py
 
 # The slow tests of one study: its whole plan, simulated again, against its findings and the recorded runs.
 test-study: install
-	$(BIN)/python -m pytest -m slow -k xarm7 tests/contract/studies
+	$(TESTS) -m slow -k xarm7 tests/contract/studies
 
 test-slow: install
-	$(BIN)/python -m pytest -m slow
+	$(TESTS) -m slow
 
-# What chapters, reports and drawings say, kept anew in tests/recorded where it has changed.
+# All committed files that are made from the sources, where they have changed: pages of docs/, and chapters, reports and
+# drawings as text in tests/recorded. Not the recorded runs, which CONTRIBUTING.md describes.
 record: install
-	$(BIN)/python -m pytest -n0 --record tests/contract -k "recorded or each_condition_can_fail"
+	$(BIN)/python -m tools.docs.reference
+	$(BIN)/python -m tools.docs.architecture
+	$(BIN)/python -m pytest --record tests/contract -k "recorded or each_condition_can_fail"
+	@git status --short docs tests/recorded
 
 # The tests in random order beside four busy loops, with a home folder that is empty and read-only.
 test-busy: install
@@ -41,15 +52,15 @@ test-busy: install
 mutants: install
 	$(BIN)/python -m tools.mutants $(if $(SAMPLE),--sample $(SAMPLE)) $(if $(SEED),--seed $(SEED))
 
-# Which tests run which lines, for `make mutants`, in .cache.
+# Which tests run which lines and read which files, for `make mutants` and `make test-changed`, in .cache.
 coverage-map: install
-	$(BIN)/python -m tools.mutants --record --workers 2
+	$(BIN)/python -m tools.mutants --record --workers $(WORKERS)
 
 # The oldest versions that pyproject.toml allows of what the runner itself needs, in build/lowest.
 test-lowest: install
 	$(BIN)/uv venv --quiet --clear --python $(BIN)/python build/lowest
 	$(BIN)/uv pip install --quiet --python build/lowest/bin/python --resolution lowest-direct --editable '.[dev]'
-	build/lowest/bin/python -m pytest -W default tests/physics/simulation/test_closed_forms.py \
+	build/lowest/bin/python -m pytest -n $(WORKERS) -W default tests/physics/simulation/test_closed_forms.py \
 		tests/contract/api tests/contract/store tests/physics/plants
 
 # The next versions of Hydra, OmegaConf and Optuna, whose pins are set aside, in build/next.
@@ -58,7 +69,7 @@ test-next: install
 	$(BIN)/uv venv --quiet --clear --python $(BIN)/python build/next
 	$(BIN)/uv pip install --quiet --python build/next/bin/python --constraint constraints.txt --editable '.[dev]'
 	$(BIN)/uv pip install --quiet --python build/next/bin/python --prerelease allow --upgrade-package optuna $(NEXT) optuna
-	build/next/bin/python -m pytest tests/unit/config tests/unit/sweeps tests/contract/config tests/contract/sweeps \
+	build/next/bin/python -m pytest -n $(WORKERS) tests/unit/config tests/unit/sweeps tests/contract/config tests/contract/sweeps \
 		tests/contract/cli
 
 # The wheel in an environment of its own, build/wheel, away from the checkout.

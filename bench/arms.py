@@ -7,6 +7,7 @@ from runner.config.run import RunConfig
 from runner.config.validation import validate
 from runner.simulation.assembly import assemble
 from runner.simulation.closed_loop import ClosedLoop
+from tools.laws import ARM_LAWS, LAWS
 
 _SCENE = ("trajectory=quintic", "noise=thesis", "torque_limits=thesis")
 # A robot in stages has a natural frequency for each; computed_torque takes one number for all joints.
@@ -38,16 +39,13 @@ class Arm:
     compiles: float
 
 
-_JOINT_LAWS = ("adaptive", "computed_torque", "joint_pd", "joint_pid", "passivity", "sliding_mode")
-
-
 def _laws(
     period: float, *names: str, one_for_all: tuple[str, ...] = (), armature: str | None = None
 ) -> dict[str, tuple[str, ...]]:
     """Return the overrides of laws at a period; `armature` is for gains of diag M, under which light joints chatter."""
     found = {name: (f"controller={name}", f"controller.period={period}") for name in names}
     more = one_for_all if armature is None else (*one_for_all, armature)
-    return {name: (*law, *more) if name in _JOINT_LAWS else law for name, law in found.items()}
+    return {name: (*law, *more) if LAWS[name].follows_joints else law for name, law in found.items()}
 
 
 _COUPLINGS = {
@@ -59,7 +57,7 @@ ARMS = (
         "3 joints",
         ("robot=macro", "trajectory.duration=19"),
         0.01,
-        _laws(0.01, "operational_space", "whole_body", *_JOINT_LAWS),
+        _laws(0.01, *ARM_LAWS),
         (10, 1),
         (1.3, 2.0),
         1.6,
@@ -80,7 +78,7 @@ ARMS = (
         "7 joints",
         ("robot=xarm7", "trajectory.duration=19"),
         0.01,
-        _laws(0.01, "operational_space", "whole_body", *_JOINT_LAWS, armature="robot.armature=assumed"),
+        _laws(0.01, *ARM_LAWS, armature="robot.armature=assumed"),
         (1,),
         (2.0,),
         1.3,

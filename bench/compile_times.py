@@ -25,7 +25,7 @@ def _judge(arm: Arm, law: str) -> bool:
         return False
     loop_program = found[0]
     works: dict[str, Callable[[], object]] = {
-        "law alone": loop_program.commands.program,
+        "law only": loop_program.commands.program,
         "tick on rk4": lambda: loop_program.program(1),
         "tick of a batch": lambda: loop_program.program(program.LANES),
     }

@@ -48,7 +48,7 @@ def _measured(arm: Arm, rounds: int) -> bool:
         share, most = ratio(ours, own), _MOST[steps]
         met &= share <= most
         print(
-            f"    {integrator:13} {steps:2} steps  {median(ours):7.2f} us, MuJoCo alone {median(own):7.2f} us: "
+            f"    {integrator:13} {steps:2} steps  {median(ours):7.2f} us, MuJoCo itself {median(own):7.2f} us: "
             f"{share:5.2f}  at most {most:g}: {'met' if share <= most else 'MISSED'}"
         )
     return met

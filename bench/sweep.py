@@ -76,7 +76,7 @@ def main(rounds: int | None = None, large: bool = False) -> bool:
 
 
 def _sweep(overrides: tuple[str, ...], runs: int) -> Cost:
-    """Make a sweep through the command line, of so many runs over seeds and what else is swept."""
+    """Make a sweep through the command line, of this many runs over seeds and what else is swept."""
     seeds = runs // math.prod(text.count(",") + 1 for text in overrides)
     with tempfile.TemporaryDirectory() as folder:
         command = [sys.executable, "-m", "runner", "-m", *overrides, f"seed=range(0,{seeds})", f"outputs={folder}"]

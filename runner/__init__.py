@@ -68,5 +68,5 @@ def __getattr__(name: str) -> Any:
 
 
 def __dir__() -> list[str]:
-    """Name what is for users, and none of the modules behind it."""
+    """Name what is for users, and no modules."""
     return list(__all__)

@@ -2,12 +2,11 @@
 
 import gc
 import re
-from collections.abc import Iterator
 from typing import Any
 
 import pytest
 from hypothesis import settings
-from support import compiled_once
+from support import compiled_once  # noqa: F401 - for what it sets
 
 from runner.base.engines import quiet_environment
 
@@ -72,9 +71,3 @@ def pytest_collection_finish() -> None:
     gc.collect()
     gc.freeze()
     gc.set_threshold(50_000, 20, 20)
-
-
-@pytest.fixture(scope="session", autouse=True)
-def _nothing_kept_of_this_session(tmp_path_factory: pytest.TempPathFactory) -> Iterator[None]:
-    yield
-    compiled_once.forget(tmp_path_factory.getbasetemp())

@@ -13,16 +13,16 @@ from runner.config.compose.compose import compose
 from runner.config.validation import validate
 from runner.simulation.compiled import commands
 from runner.simulation.run import simulate_repetition
+from tools.laws import ARM_LAWS
 
 _SEEDS = 20
 _TARGET = 1e-11  # rad
 _NOISY = ("plant=rk4", "trajectory=quintic", "duration=1", "noise=thesis", "torque_limits=thesis")
 _ARMATURE = "robot.armature=assumed"  # light joints without it are unstable under gains of diag M
-_JOINT_LAWS = ("adaptive", "computed_torque", "joint_pd", "joint_pid", "passivity", "sliding_mode")
 _CASES = {
-    "3 joints": ("robot=macro", ("operational_space", "whole_body", *_JOINT_LAWS)),
+    "3 joints": ("robot=macro", ARM_LAWS),
     "6 joints": ("robot=combined", ("whole_body", "macro_mini")),
-    "7 joints": ("robot=xarm7", ("operational_space", "whole_body", *_JOINT_LAWS)),
+    "7 joints": ("robot=xarm7", ARM_LAWS),
 }
 
 

@@ -23,7 +23,7 @@ def main(arguments: list[str]) -> int:
     order = ["-p", "randomly", f"--randomly-seed={seed}"]
     with _busy_loops(), _read_only_home() as home:
         return subprocess.run(
-            [sys.executable, "-m", "pytest", *order, "--dist", "load"],
+            [sys.executable, "-m", "pytest", *order, "-n", "2"],
             env={**os.environ, "HOME": str(home)},
             check=False,
         ).returncode

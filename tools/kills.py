@@ -36,7 +36,7 @@ class Tally:
 
 
 def torture(folder: Path, arguments: list[str], workers: int, commands: int, seed: int, pause: float) -> Tally:
-    """Run a sweep and kill so many of its workers and of its commands, each `pause` s after the last on average."""
+    """Run a sweep and kill this many of its workers and commands, each `pause` s after the last on average."""
     return torture_command(folder, ["-m", *arguments], workers, commands, seed, pause)
 
 

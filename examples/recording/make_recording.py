@@ -4,7 +4,7 @@
 
 The arm moves as in experiment/swing.yaml. Its joints have friction, its links other masses, its encoders noise. The
 logger starts 0.7313 s before the motion, writes 250 rows a second, the first joint in degrees, and the current of the
-third motor in place of its torque.
+third motor instead of its torque.
 """
 
 import sys

@@ -22,7 +22,7 @@ WITHOUT = {
     "settling_time": "it jumps from one tick to another, and stays in between",
     "saturation_fraction": "it counts ticks",
     "reach_loss_fraction": "it counts ticks",
-    "cross_track_error": "it is the distance to the nearest point of a curve, whose change is not worked out",
+    "cross_track_error": "it is the distance to the nearest point of a curve, whose change is not computed",
 }
 """Metrics without a derivative, with the reason."""
 

@@ -4,8 +4,9 @@ from collections.abc import Callable, Sequence
 
 import pandas as pd
 
-from runner.reporting.answers import Answer, sentences
+from runner.reporting.answers import Answer
 from runner.reporting.comparison.sweeps import answer_rows
+from runner.reporting.sentences import sentences
 
 
 class Comparison(pd.DataFrame):

@@ -15,6 +15,7 @@ from runner.base.quantities import quantity
 from runner.base.sanitize import few, one_line
 from runner.store.axes import Axis, axes_of, find_axis
 from runner.sweeps.measurements import Measurements, measure_sweep
+from runner.sweeps.question import find_question
 from runner.sweeps.status import Status, find_status
 
 if TYPE_CHECKING:
@@ -137,30 +138,40 @@ class Sweep(store.Sweep):
 
     @public
     def compare(
-        self, *, by: str, within: str | Sequence[str] | None = None, metrics: str | Sequence[str] | None = None
+        self,
+        *,
+        by: str | None = None,
+        within: str | Sequence[str] | None = None,
+        metrics: str | Sequence[str] | None = None,
     ) -> "Comparison":
-        """Compare each value of an axis with its first value, in pairs of runs that differ in nothing else.
+        """Compare the values of an axis with each other, in pairs of runs that differ in nothing else.
 
         The columns are the axes in `within`, "all" if compared over all their values; first and second, the two values;
         metric and unit; difference, second minus first (Hodges-Lehmann); low and high, the ends of its interval; n, the
         number of pairs; effect, from -1 (smaller in every pair) to 1; p, corrected (Holm); and word, the conclusion.
-        The interval excludes zero exactly if p is below 0.05. Other swept axes are pooled: each draw counts once. The
-        attribute `summary` has the answers in words.
+        The interval excludes zero exactly if p is below 0.05. Without draws the difference is exact. A pooled row is
+        left out if its conditions disagree. The attribute `summary` has the answers in words.
 
         Args:
-            by: The axis, such as "controller".
+            by: The axis; None for the question of the sweep, such as "controller".
             within: Axes; the comparison is repeated for each combination of their values. None compares over all other
-                axes, and then within the one that changes the first metric most.
+                axes, and under each combination of their values.
             metrics: Names of metrics; None for all.
 
         Raises:
-            RunnerError: if there is no such axis or metric, or no two runs share their seeds.
+            RunnerError: if there is no such axis or metric, no question, or no two runs share their seeds.
         """
         from runner.api.comparison import comparison
         from runner.reporting.comparison.sweeps import compare_levels
+        from runner.sweeps.finer_step import work_out_sweep
 
+        work_out_sweep(self)
+        self.__dict__.pop("_measurements", None)  # measured before the finer step was simulated
         inside = [within] if isinstance(within, str) else within
-        return comparison(compare_levels(self._measurements, by, inside, self._names(metrics) if metrics else ()))
+        asked = by or getattr(find_question(self._axes, self.question), "name", "")
+        if not asked:
+            raise RunnerError(f"by: all axes are conditions. Allowed: {', '.join(axis.name for axis in self._axes)}.")
+        return comparison(compare_levels(self._measurements, asked, inside, self._names(metrics) if metrics else ()))
 
     def __repr__(self) -> str:
         told = _progress_text(find_status(self))

@@ -92,7 +92,7 @@ class Form(StrictModel):
     Attributes:
         elements: Right side of each equation, by its left side.
         math: The equation in Typst mathematics, if it defines a name, or if no expression has its value.
-        code: Function of equations/derivations that returns what `math` says at the samples.
+        code: Function of equations/derivations that returns the values of `math` at the samples.
     """
 
     elements: dict[str, Written] = Field(default_factory=dict)
@@ -107,7 +107,7 @@ class Form(StrictModel):
             try:
                 left_side(name)
             except ExpressionError as error:
-                raise ValueError(f"'{name}' is no left side of an equation: {error}") from error
+                raise ValueError(f"'{name}' is not the left side of an equation: {error}") from error
         if not any(value for name, value in self if name not in ("code", "why")):
             raise ValueError("has neither elements nor math: nothing to show")
         return self

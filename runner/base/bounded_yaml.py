@@ -36,7 +36,7 @@ class Bounds:
     @property
     def too_deep(self) -> str:
         """Return the message about a document that exceeds the depth."""
-        return f"nested deeper than {self.depth} levels; no config needs so many"
+        return f"nested deeper than {self.depth} levels; no config needs more"
 
 
 CONFIG = Bounds(Limit(250_000, "bytes"), values=10_000)
@@ -198,7 +198,7 @@ class _Scan:
             yield from _not_decimal(event.value)
         if self._open[-1].key_next and not self._is_text(event):
             found = quoted(event.value) if isinstance(event, yaml.ScalarEvent) else "a collection"
-            yield f"the key {found} is no text; put it in quotes, or look for a typing error"
+            yield f"the key {found} is not a string; put it in quotes, or look for a typing error"
 
     def _is_text(self, event: yaml.NodeEvent) -> bool:
         if not isinstance(event, yaml.ScalarEvent):

@@ -40,10 +40,13 @@ GRID = Limit(10_000, "runs")  # of a grid of a study, each with its strings
 CHAPTER = Limit(1_000_000, "bytes")  # a chapter of a study; built-in ones have 20 kB
 TABLE = Limit(5_000_000, "bytes")  # the data file of a trajectory
 TABLE_NUMBERS = Limit(40_000, "numbers")  # of a data file, which become part of the config
-RECORDING = Limit(100_000_000, "bytes")
+RECORDING = Limit(400_000_000, "bytes")  # of a text or Parquet file
+RECORDING_NUMBERS = Limit(24_000_000, "numbers")  # 8 bytes each: 200,000 rows of 120 columns
 RECORDING_ROWS = Limit(1_000_000, "rows")  # 15 minutes at 1 kHz; 8 bytes for each column read
 RECORDING_ROW = Limit(100_000, "characters in a row")  # 10^4 columns
-BAG_MEMORY = Limit(1_000_000_000, "bytes")  # of memory, and of a file, for an unpacked ROS bag
+BAG = Limit(50_000_000_000, "bytes")  # of a ROS bag, which is streamed
+BAG_MEMORY = Limit(500_000_000, "bytes")  # of memory for one part of a ROS bag
+LOG_FILES = Limit(1000, "files")  # of a log in a folder
 RECORD = Limit(50_000_000, "bytes")  # JSON written by the runner; 10^5 listed runs have 20 MB
 RECORD_VALUES = Limit(2_000_000, "values")  # of a record, 100 bytes each
 

@@ -105,7 +105,7 @@ def describe_mixture(counts: Mapping[Machine, int]) -> str:
 
 
 def equal_up_to_rounding(a: float | None, b: float | None) -> bool:
-    """Return True if two values of a metric differ by no more than rounding; None is no value."""
+    """Return True if two values of a metric differ by no more than rounding; None is not a value."""
     return a == b if a is None or b is None else math.isclose(a, b, rel_tol=ROUNDING, abs_tol=quantities.ROUNDING)
 
 

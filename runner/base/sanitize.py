@@ -5,6 +5,7 @@ import io
 import re
 import unicodedata
 from collections.abc import Iterable, Sequence
+from functools import lru_cache
 
 VALUE = 200
 """Largest length of a quoted value, in characters."""
@@ -82,6 +83,7 @@ def plain(text: str) -> str:
     return "".join(map(_visible, _SPACE.sub(" ", text)))
 
 
+@lru_cache(maxsize=4096)
 def _visible(character: str) -> str:
     code = ord(character)
     control = unicodedata.category(character) in ("Cc", "Cs") or unicodedata.bidirectional(character) in _OVERRIDES

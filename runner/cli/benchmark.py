@@ -78,5 +78,5 @@ def check_law(name: str, profile: str, part: "UserPlugin", workers: int) -> Iter
             f"{amount.trials:,} trials, {amount.longer:,} long runs, {amount.runs:,} runs{ended}"
         )
     if not found.tuned:
-        yield f"no ranges in {part.name}.ranges.yaml: the law is compared with the values of its config alone"
+        yield f"no ranges in {part.name}.ranges.yaml: the law is compared only with the values of its config"
     yield told([part.name], found.amounts, workers)

@@ -1,7 +1,7 @@
 """Compare runs or sweeps, the first with each of the others.
 
-Sweeps are compared by cell and repetition; with --by, the levels of an axis of one sweep. For a run and a recording of
-a real arm (CSV or ROS bag) it writes a report in reports/ and prints its folder.
+Sweeps are compared by cell and repetition. With one sweep, it compares the values of an axis: --by, else its question,
+such as the controller. For a run and a recording of a real arm it writes a report in reports/ and prints its folder.
 
 Example: runner compare latest --by controller --within robot
 """
@@ -23,6 +23,8 @@ if TYPE_CHECKING:
     from runner.recordings.compare import RecordingComparison
     from runner.store import Run, Sweep
 
+_LOGS = (".csv", ".tsv", ".txt", ".log", ".parquet", ".zip", ".bag", ".mcap", ".db3")  # a missing file is called a log
+
 
 def add_arguments(parser: Parser) -> None:
     """Add the arguments."""
@@ -31,12 +33,12 @@ def add_arguments(parser: Parser) -> None:
         nargs="+",
         type=Stored("run", "sweep", other=_is_recording),
         metavar="DIR",
-        help="runs, sweeps, latest, a CSV file or a ROS bag",
+        help="runs, sweeps, latest, or a log of an arm",
     )
     parser.add_shared(
         metrics="metrics (default: five; all with --all or --json)",
         json="print JSON, one object for each row",
-        by="compare the levels of these axes of one sweep",
+        by="one sweep: compare the values of these axes (default: its question); the first becomes its question",
         within="within each level of these axes (default: over all, then the strongest)",
         where="only cells with this value of a key; repeat for more",
         output="recording: folder of the report",
@@ -66,19 +68,20 @@ def _compare(options: Namespace) -> None:
     from runner.store.run import Run
     from runner.store.sweep import Sweep
     from runner.sweeps.measurements import check_metrics, limit_sweep
+    from runner.sweeps.question import keep_question
 
     everything, things = options.all or options.json, list(map(open_stored, options.folders))
     runs = [thing for thing in things if isinstance(thing, Run)]
     sweeps = [thing for thing in things if isinstance(thing, Sweep)]
     if options.output:
         raise RunnerError(f"--output: nothing is written ({options.output}). Allowed: only with a recording.")
-    if options.within and not options.by:
-        raise RunnerError("--within: needs --by AXIS, the axis that is compared.")
+    if options.within and (len(things) > 1 or runs):
+        raise RunnerError("--within: not for these results. Allowed: only for one sweep.")
     if (options.by and (len(things) > 1 or runs)) or (options.where and runs):
         option, allowed = ("--by", "one sweep") if options.by else ("--where", "sweeps")
         raise RunnerError(f"{option}: not for these results. Allowed: only for {allowed}.")
     if len(things) == 1 and not options.by:
-        raise RunnerError(_explain_alone(*runs, *sweeps))
+        options.by = [_question(*runs, *sweeps)]
     if runs and sweeps:
         raise RunnerError(_explain_mixture(runs[0], sweeps[0]))
     sweeps = [limit_sweep(sweep, options.where) for sweep in sweeps]
@@ -91,6 +94,7 @@ def _compare(options: Namespace) -> None:
         for option in ("by", "within"):
             for name in getattr(options, option) or ():
                 find_axis(first.axes, name, f"--{option}")
+        keep_question(sweeps[0], options.by[0])
         by_axis = {axis: compare_levels(first, axis, options.within or None, metrics) for axis in options.by}
         answers = [answer for some in by_axis.values() for answer in some]
         texts = ["\n".join(level_lines(first, axis, some, everything)) for axis, some in by_axis.items()]
@@ -112,20 +116,28 @@ def _json_text(rows: Sequence[Mapping[str, Any]]) -> str:
     return json.dumps(finite, indent=2, allow_nan=False)
 
 
-def _explain_alone(thing: "Run | Sweep") -> str:
-    """Return the reason why one run or sweep is not enough."""
+def _question(thing: "Run | Sweep") -> str:
+    """Return the axis that a sweep asks about.
+
+    Raises:
+        RunnerError: If the result is a run, or all axes of the sweep are conditions.
+    """
     from runner.store import Run
     from runner.store.axes import axes_of
+    from runner.sweeps.question import find_question
 
     folder = thing.folder
     if isinstance(thing, Run):
-        return f"{folder}: only one run. Add a second one: `runner compare {folder} OTHER`"
+        raise RunnerError(f"{folder}: only one run. Add a second one: `runner compare {folder} OTHER`")
     axes, _ = axes_of(thing.overrides)
-    known = ", ".join(axis.name for axis in axes) or "nothing"
-    return (
-        f"{folder}: only one sweep. Add a second one, or compare the levels of an axis ({known}): "
-        f"`runner compare {folder} --by AXIS`"
-    )
+    asked = find_question(axes, thing.question)
+    if asked is None:
+        known = ", ".join(axis.name for axis in axes) or "nothing"
+        raise RunnerError(
+            f"{folder}: only one sweep, over conditions only. Add a second one, or compare the levels of an axis "
+            f"({known}): `runner compare {folder} --by AXIS`"
+        )
+    return asked.name
 
 
 def _explain_mixture(run: "Run", sweep: "Sweep") -> str:
@@ -148,9 +160,11 @@ def _explain_mixture(run: "Run", sweep: "Sweep") -> str:
 def _is_recording(path: Path) -> bool:
     if kind_of(path):
         return False
-    from runner.recordings import is_bag
+    if not path.is_dir():
+        return path.is_file() or path.suffix.lower() in _LOGS
+    from runner.recordings.files import is_log_folder
 
-    return path.suffix.lower() == ".csv" or is_bag(path)
+    return is_log_folder(path)
 
 
 def _seconds(text: str) -> float:

@@ -22,6 +22,7 @@ def add_arguments(parser: Parser) -> None:
     parser.add_formats(FORMATS, "html, pdf or both (default: html,pdf)")
     parser.add_shared(
         metrics="metrics that compare a sweep; the first ranks it (default: the main ones)",
+        by="one sweep: the axis that it asks about (default: its question, such as the controller)",
         output="folder to write (default: in reports/ of the outputs folder)",
     )
 
@@ -31,5 +32,5 @@ def run(options: Namespace) -> int:
     from runner.reporting.stored import write
 
     formats = [name for name in FORMATS if name in (options.format or FORMATS)]
-    print(write(options.folders, options.metrics or (), formats, options.output))
+    print(write(options.folders, options.metrics or (), formats, options.output, options.by or ()))
     return 0

@@ -37,7 +37,7 @@ _PART = "sweep.part"
 _OF_SWEEPS = [*(f"sweep.{name}" for name in ("trace", "retry", "on_failure", "attempts", "time_limit")), _PART]
 _NAMES = (("robot", "name"), ("controller", "kind"), ("trajectory", "kind"))
 _FAILURES_SHOWN = 20
-_MOST_RANKED = 200  # cells; to read so many takes half a second
+_MOST_RANKED = 200  # cells; to read these takes half a second
 
 # The part of conf/config.yaml about Hydra itself, which does not read that file for its own help.
 _WITHOUT_OURS = (
@@ -374,6 +374,7 @@ def _print_cells(ended: "Ended", axes: "Sequence[Axis]") -> None:
     from runner.reporting.sweep.subject import choose
     from runner.sweeps.finer_step import work_out_sweep
     from runner.sweeps.measurements import measure_sweep
+    from runner.sweeps.question import SEED, find_question
 
     made, failed = len(ended.ends) - ended.stored, len(ended.failures)
     runs = "1 run" if len(ended.ends) == 1 else f"{len(ended.ends)} runs"
@@ -397,6 +398,7 @@ def _print_cells(ended: "Ended", axes: "Sequence[Axis]") -> None:
     if ended.part:
         print(one_line(f"runner: next: `runner status {name}`"), file=sys.stderr)
         return
-    compared = next((axis.name for axis in axes if axis.name != "seed"), None)
-    compare = f", `runner compare {name} --by {compared}`" if compared else ""
+    swept = [axis.name for axis in axes if axis.name != SEED]
+    by = "" if find_question(axes) else f" --by {swept[0]}" if swept else None
+    compare = "" if by is None else f", `runner compare {name}{by}`"
     print(one_line(f"runner: next: `runner report {name}`, `runner table {name}`{compare}"), file=sys.stderr)

@@ -128,7 +128,7 @@ def _late(config: RunConfig) -> str | None:
         if late % every:
             return (
                 f"it has to know which torque acts between two ticks of the loop {loop.name}, {every} ticks of the "
-                f"fastest loop apart, and plant.computation.delay with {late} is no multiple of that; take {every}"
+                f"fastest loop apart, and plant.computation.delay with {late} is not a multiple of that; take {every}"
             )
     return None
 
@@ -182,7 +182,7 @@ def endpoint_ticks(config: RunConfig) -> Mapping[str, EndpointTicks]:
         for key, value, ticks in (("period", period, every), ("delay", sensor.delay, late)):
             if abs(value - ticks * loop.period) > 1e-9 * loop.period or (key == "period" and not ticks):
                 problems.append(
-                    f"endpoint_sensor.{key}: {value:g} s is no multiple of the period of the loop {loop.name}, "
+                    f"endpoint_sensor.{key}: {value:g} s is not a multiple of the period of the loop {loop.name}, "
                     f"{loop.period:g} s; take {max(ticks, 1) * loop.period:g}"
                 )
     if problems:

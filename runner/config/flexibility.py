@@ -91,7 +91,7 @@ def _refused(config: RunConfig, plant: TorquePlantConfig, flexibility: Flexibili
     (moved,) = find_motion(config.arm, plant.model_copy(update={"dynamics": "coupled", "wrist_rotation": "real"})).arms
     if moved.friction.acts[~flexibility.flexible].any():
         problems.append(
-            "plant.friction acts on the motors of flexible joints alone; take a list with 0 for the joints that are "
+            "plant.friction acts only on the motors of flexible joints; take a list with 0 for the joints that are "
             "rigid"
         )
     if type(config.environment) is WallConfig:
@@ -104,7 +104,7 @@ def _refused(config: RunConfig, plant: TorquePlantConfig, flexibility: Flexibili
     theta = joints is not None and joints.encoders == "motor" and joints.static_deflection == "unknown"
     if isinstance(config.controller, MotorPdConfig) and not theta:
         problems.append(
-            "motor_pd reads theta as it is; take plant.flexible_joints.encoders=motor and .static_deflection=unknown"
+            "motor_pd reads theta unchanged; take plant.flexible_joints.encoders=motor and .static_deflection=unknown"
         )
     return problems
 
@@ -143,7 +143,7 @@ def check_flexible_links(config: RunConfig) -> None:
     except np.linalg.LinAlgError:
         rate = np.inf
     if not rate < 1e9:
-        problems.append("plant.motor_inertia: a link without mass turns with its motor alone; give each joint one")
+        problems.append("plant.motor_inertia: a link without mass turns only with its motor; give each joint one")
     else:
         problems += _long_step(config, "the links", rate)
     if problems:

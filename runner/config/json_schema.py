@@ -44,7 +44,7 @@ def json_schema(group: str = "") -> dict[str, Any]:
 
 
 def meanings(model: type[StrictModel]) -> dict[str, str]:
-    """Return what the docstrings of a model and its bases say of its keys."""
+    """Return the description of each key in the docstrings of a model and its bases."""
     found: dict[str, str] = {}
     for base in reversed(model.__mro__):
         text = inspect.cleandoc(base.__doc__ or "").partition("Attributes:\n")[2]
@@ -73,7 +73,7 @@ def _of_group(name: str) -> dict[str, Any]:
 
 
 def _merged(schemas: list[dict[str, Any]]) -> dict[str, Any]:
-    """Return what any of some schemas of a key allows, with all its meanings."""
+    """Return the union of some schemas of a key, with all its meanings."""
     meanings = dict.fromkeys(schema["description"] for schema in schemas)
     forms = [form for schema in schemas for form in schema["anyOf"][:-1]]
     return {"description": " Or: ".join(meanings), "anyOf": [*forms, _INTERPOLATED]}

@@ -72,7 +72,7 @@ def count_steps(arm: RobotOutline, plant: PlantConfig, controller: ControllerCon
             "the servo must be as fast as its commands, or faster"
         )
     problems += [
-        f"{name}: {period:g} s is no multiple of the fastest loop's, {fastest} with {tick:g} s"
+        f"{name}: {period:g} s is not a multiple of the fastest loop's, {fastest} with {tick:g} s"
         for name, period in periods.items()
         if not _is_multiple(period, tick)
     ]
@@ -83,7 +83,7 @@ def count_steps(arm: RobotOutline, plant: PlantConfig, controller: ControllerCon
         )
     elif not _is_multiple(tick, step):
         problems.append(
-            f"{fastest}: {tick:g} s is no multiple of plant.step, {step:g} s; "
+            f"{fastest}: {tick:g} s is not a multiple of plant.step, {step:g} s; "
             f"set plant.step to the period divided by a whole number, such as {tick / steps:g}"
         )
     if problems:

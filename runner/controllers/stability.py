@@ -247,7 +247,7 @@ def delay_limit(late: int) -> float:
 
 
 def pattern_limit(missed: int) -> float:
-    """Return the largest stable omega_n h if so many periods are missed after each hit, which lengthens the period."""
+    """Return the largest stable omega_n h if `missed` periods are missed after each hit, which lengthens the period."""
     return delay_limit(0) / (missed + 1)
 
 

@@ -33,7 +33,7 @@ robot:
 
 
 def write_folder(examination: Examination, folder: Path) -> list[Path]:
-    """Write `robot/NAME.yaml` and `robots/NAME.urdf`, or an MJCF as it is, with its files, if nothing is fixed.
+    """Write `robot/NAME.yaml` and `robots/NAME.urdf`, or an unchanged MJCF, with its files, if nothing is fixed.
 
     It also writes `schema.json`, with which an editor completes the keys of the YAML file.
 

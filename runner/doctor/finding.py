@@ -7,8 +7,8 @@ from typing import Literal
 
 from runner.base.sanitize import few
 
-Grade = Literal["refused", "fixed", "note"]
-GRADES: tuple[Grade, ...] = ("refused", "fixed", "note")
+Grade = Literal["refused", "ask", "fixed", "note"]
+GRADES: tuple[Grade, ...] = ("refused", "ask", "fixed", "note")
 
 
 @dataclass(frozen=True)

@@ -46,7 +46,7 @@ def check_mass_matrix(tree: UrdfTree, model: RobotModel, postures: FloatArray) -
     heavy = {name for name, link in tree.links.items() if number(link.find("inertial/mass"), "value") > 0.0}
     free = [joint for joint in model.joint_names if not any(joint in tree.way(link) for link in heavy)]
     why = "no link has a mass" if len(free) == model.nq else f"no mass behind {few(free)}" if free else _NO_INERTIA
-    text = f"{why}: torques cannot move it; the config takes plant=kinematic, whose joints go where they are told"
+    text = f"{why}: torques cannot move it; the config takes plant=kinematic, whose joints follow every command"
     return [Finding("note", "mass", text, "for torques, give the links behind every joint <inertial> with their mass")]
 
 

@@ -39,7 +39,7 @@ def choose_tip(tree: UrdfTree, wanted: str | None) -> str:
             raise RunnerError(f"--tip: no joint moves the link '{wanted}'; choose one of {few(_offered(tree))}")
         return wanted
     if not any(map(moves, tree.joints.values())):
-        raise RunnerError(f"{tree.robot.get('name')} has no joint that moves: it is no arm")
+        raise RunnerError(f"{tree.robot.get('name')} has no joint that moves: it is not an arm")
     ends = _ends(tree)
     if len(ends) == 1:
         return frames_at(tree, ends[0])[0]

@@ -114,6 +114,6 @@ def build(config: PushConfig) -> Environment:
         return Push(config)
     if any(config.moment):
         raise ConfigError(
-            f"environment.moment: {config.moment} acts on the tip alone; take [0, 0, 0] for a push on a link"
+            f"environment.moment: {config.moment} acts only on the tip; take [0, 0, 0] for a push on a link"
         )
     return PushOnLink(config, config.link)

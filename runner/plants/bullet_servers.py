@@ -96,7 +96,7 @@ class PhysicsServers:
                 said.insert(0, str(error))
         if said:
             pybullet.disconnect(client)
-            raise ConfigError(f"robot.urdf: PyBullet does not take it as it is: {'; '.join(_words(said))}")
+            raise ConfigError(f"robot.urdf: PyBullet does not accept it: {'; '.join(_words(said))}")
         return Server(client, body, urdf, used=False)
 
     def _empty(self) -> int:

@@ -229,7 +229,7 @@ def _compiled(spec: Any) -> Any:
 
 
 def _refused(error: ValueError) -> ConfigError:
-    return ConfigError(f"robot.urdf: MuJoCo does not take it as it is: {' '.join(str(error).split())}")
+    return ConfigError(f"robot.urdf: MuJoCo does not accept it: {' '.join(str(error).split())}")
 
 
 def _is_flat(body: Any) -> bool:

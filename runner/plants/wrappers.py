@@ -88,8 +88,8 @@ class WithTipContact(PlantWrapper):
 class PayloadChanges(PlantWrapper):
     """Plants of one arm, each with another payload.
 
-    At a change, the arm keeps its position and velocity. The new payload starts with the velocity of the tip, so there
-    is no impact. A payload picked up at rest by a moving tip would cause one.
+    At a change, the arm keeps its position and velocity. The new payload starts with the velocity of the tip, and no
+    impact occurs. A payload picked up at rest by a moving tip would cause one.
 
     Args:
         plants: Plant of each payload, in order.

@@ -1,16 +1,17 @@
 """Recordings of real arms: reading, time alignment, comparison with stored runs, and friction identification."""
 
+import hashlib
 from pathlib import Path
 
-BAGS = (".bag", ".mcap", ".db3")
-"""Suffixes of ROS bags in one file."""
+_BLOCK = 1_000_000  # bytes held at a time
 
 
-def is_bag(path: Path) -> bool:
-    """Return whether a recording is a ROS bag, one file or a folder of ROS 2; others are CSV files."""
-    return path.suffix.lower() in BAGS or (path / "metadata.yaml").is_file()
-
-
-def files_of(path: Path) -> list[Path]:
-    """Return the files of a recording."""
-    return sorted(file for file in path.iterdir() if file.is_file()) if path.is_dir() else [path]
+def digest_of(path: Path) -> str:
+    """Return the SHA-256 of the file of a recording, or of all files in its folder, one after another."""
+    found = hashlib.sha256()
+    for file in sorted(path.rglob("*")) if path.is_dir() else [path]:
+        if file.is_file():
+            with file.open("rb") as opened:
+                while block := opened.read(_BLOCK):
+                    found.update(block)
+    return found.hexdigest()

@@ -2,10 +2,10 @@
 
 from collections.abc import Iterator, Mapping, Sequence
 from pathlib import Path
-from typing import Literal, NamedTuple
+from typing import Literal, NamedTuple, cast
 
 import numpy as np
-from pydantic import Field, FiniteFloat, PositiveFloat, model_validator
+from pydantic import Field, FiniteFloat, NonNegativeInt, PositiveFloat, model_validator
 
 from runner.base.arrays import FloatArray
 from runner.base.data_file import read_data
@@ -14,15 +14,17 @@ from runner.base.sanitize import quoted
 from runner.schema.model import StrictModel, absurd
 from runner.schema.units import WRITTEN
 
-AMPERE = "A"
-SignalKind = Literal["position", "torque", "tip"]
+AMPERE, PERCENT = "A", "%"
+SignalKind = Literal["position", "torque", "tip", "reference"]
+Holds = Literal["torque", "without_gravity", "commanded"]
+Side = Literal["motor", "link"]
 
 
 class Signal(NamedTuple):
     """A signal of an arm.
 
     Attributes:
-        kind: The position or torque of a joint, or a coordinate of the tip in the base frame.
+        kind: The position, commanded position or torque of a joint, or a coordinate of the tip in the base frame.
         of: Name of the joint; x, y or z of the tip.
     """
 
@@ -32,7 +34,9 @@ class Signal(NamedTuple):
     @property
     def words(self) -> str:
         """Name of the column."""
-        return f"tip {self.of}" if self.kind == "tip" else f"{self.kind} of {self.of}"
+        if self.kind == "tip":
+            return f"tip {self.of}"
+        return f"{'commanded position' if self.kind == 'reference' else self.kind} of {self.of}"
 
 
 def stacked(signals: Mapping[Signal, FloatArray], wanted: Sequence[Signal]) -> FloatArray | None:
@@ -56,40 +60,78 @@ class TimeColumn(StrictModel):
 class Column(StrictModel):
     """Signal of a column: a joint, a torque or a coordinate of the tip.
 
+    The signal is sign (value - zero) times its unit, after jumps by `wrap` are removed.
+
     Attributes:
         joint: The joint whose position it holds.
+        reference: The joint whose commanded position it holds.
         torque: The joint whose torque it holds, or the current of whose motor.
         tip: The coordinate of the tip in the base frame.
-        unit: Its unit, such as deg, N m or mm; A for a current.
+        unit: Its unit, such as deg, N m or mm; A for a current; % of `scale`.
         constant: Torque by current, in N m/A (N/A for a prismatic joint): the motor's constant times its gear ratio,
             below zero where a current drives the joint backwards.
+        scale: With unit %: the signal at 100 %, in N m, N, rad or m.
+        sign: -1 if the column grows where the signal falls.
+        zero: The column's value where the signal is zero, in its unit.
+        wrap: Range after which the column starts again, in its unit. None: a turn, where a joint jumps by one.
+        coupling: Signals of other joints that are added, times a factor each: joint 3 of a FANUC is J3 + J2.
+        holds: Of a torque: torque, measured with gravity; without_gravity, as a controller that compensates gravity
+            reports it; commanded, which acts from its row to the next one.
+        side: Of a torque: motor, or link where the sensor is behind the gears, and so feels neither the inertia of the
+            rotor nor the friction of the gears.
     """
 
     joint: str | None = None
+    reference: str | None = None
     torque: str | None = None
     tip: Literal["x", "y", "z"] | None = None
     unit: str
     constant: FiniteFloat | None = None
+    scale: PositiveFloat | None = None
+    sign: Literal[1, -1] = 1
+    zero: FiniteFloat = 0.0
+    wrap: PositiveFloat | None = None
+    coupling: dict[str, FiniteFloat] = Field(default_factory=dict)
+    holds: Holds | None = None
+    side: Side | None = None
 
     @model_validator(mode="after")
     def _check(self) -> "Column":
-        given = [name for name in ("joint", "torque", "tip") if getattr(self, name) is not None]
+        given = [name for name in ("joint", "reference", "torque", "tip") if getattr(self, name) is not None]
         if len(given) != 1:
             found = f"found {' and '.join(given)}" if given else "found none of them"
-            raise ValueError(f"must say one of joint, torque and tip; {found}")
+            raise ValueError(f"must say one of joint, reference, torque and tip; {found}")
         if (self.unit == AMPERE) != (self.constant is not None):
             raise ValueError("a current needs constant, in N m/A, and nothing else takes it: unit: A, constant: 1.6")
+        if (self.unit == PERCENT) != (self.scale is not None):
+            raise ValueError(
+                'a per cent needs scale, its value at 100 %, and nothing else takes it: unit: "%", scale: 26'
+            )
         if self.constant is not None and self.torque is None:
             raise ValueError("a current is that of a motor: say by torque whose")
         if self.constant == 0.0:
             raise ValueError("constant: must not be 0; it is the torque of one ampere, below 0 where it turns the sign")
+        for key in ("holds", "side"):
+            if self.torque is None and getattr(self, key) is not None:
+                raise ValueError(f"{key}: is for torques; leave it out")
+        if self.wrap is not None and self.joint is None and self.reference is None:
+            raise ValueError("wrap: is for positions of joints; leave it out")
+        if self.coupling and self.tip is not None:
+            raise ValueError("coupling: is for joints; leave it out")
         return self
+
+    @property
+    def of(self) -> str | None:
+        """The joint that it is of; None for a coordinate of the tip."""
+        return next((name for name in (self.joint, self.reference, self.torque) if name is not None), None)
 
     @property
     def signal(self) -> Signal:
         """The signal that it holds."""
         if self.joint is not None:
             return Signal("position", self.joint)
+        if self.reference is not None:
+            return Signal("reference", self.reference)
         return Signal("torque", self.torque) if self.torque is not None else Signal("tip", str(self.tip))
 
 
@@ -98,11 +140,12 @@ class ColumnsMap(StrictModel):
 
     Attributes:
         time: Column of the time; None if rows have an even rate.
-        rate: Rows in a second, in Hz; beside a column of time it must agree with that.
+        rate: Rows in a second, in Hz; if there is a column of time, both must agree.
         columns: What each column holds, by its name; columns that are not named are not read.
         torque: held if a torque acts from its row to the next one, as a controller commands it: it is centred, half a
             row later; instant if it was measured at the time of its row.
-        topic: Of a ROS bag: the topic of its joint states; None where it has one alone.
+        topic: Of a ROS bag: the topic of its joint states; None if it has only one.
+        episode: Of a LeRobot data set: the episode; None for its longest.
     """
 
     time: TimeColumn | None = None
@@ -110,6 +153,7 @@ class ColumnsMap(StrictModel):
     columns: dict[str, Column] = Field(min_length=1)
     torque: Literal["held", "instant"] = "held"
     topic: str | None = None
+    episode: NonNegativeInt | None = None
 
     @model_validator(mode="after")
     def _check(self) -> "ColumnsMap":
@@ -120,7 +164,35 @@ class ColumnsMap(StrictModel):
             before = first.setdefault(column.signal, name)
             if before != name:
                 raise ValueError(f"columns: {before} and {name} both hold the {column.signal.words}; leave one out")
+        for key in ("holds", "side"):
+            said = {getattr(column, key) for column in self.columns.values() if column.torque is not None}
+            if len(said) > 1:
+                raise ValueError(f"columns: {key} must be the same for all torques; leave out those that differ")
+        for name, column in self.columns.items():
+            for joint in column.coupling:
+                if (column.signal.kind, joint) not in first or joint == column.of:
+                    raise ValueError(
+                        f"columns.{name}.coupling: no other column holds the {column.signal.kind} of {joint}"
+                    )
         return self
+
+    def _of_torques(self, key: str) -> str | None:
+        return next((getattr(column, key) for column in self.columns.values() if column.torque is not None), None)
+
+    @property
+    def holds(self) -> Holds:
+        """What the columns of torques hold."""
+        return cast("Holds", self._of_torques("holds") or "torque")
+
+    @property
+    def side(self) -> Side:
+        """The side of the gears on which torques are measured."""
+        return cast("Side", self._of_torques("side") or "motor")
+
+    @property
+    def held(self) -> bool:
+        """Whether a torque acts from its row to the next one."""
+        return self.torque == "held" or self.holds == "commanded"
 
 
 class Factor(NamedTuple):
@@ -136,7 +208,7 @@ class Factor(NamedTuple):
 
 
 def read_map(path: Path, joints: Sequence[str], units: Sequence[str]) -> tuple[ColumnsMap, dict[str, Factor]]:
-    """Return the column map of a file, and the factor of each column to SI.
+    """Return the column map of a file, and the factor of each column to SI with its sign.
 
     Args:
         path: The file, YAML.
@@ -147,6 +219,14 @@ def read_map(path: Path, joints: Sequence[str], units: Sequence[str]) -> tuple[C
         RunnerError: if it cannot be read, names a joint that the robot does not have, or a unit that does not fit.
     """
     found = read_data(path, ColumnsMap)
+    try:
+        return found, factors_of(found, joints, units)
+    except RunnerError as error:
+        raise RunnerError(f"{path}: {error}") from None
+
+
+def factors_of(found: ColumnsMap, joints: Sequence[str], units: Sequence[str]) -> dict[str, Factor]:
+    """Return the factor of each column of a map to SI; see read_map."""
     problems = [*_unknown_joints(found, joints), *absurd("", found.model_dump())]
     factors: dict[str, Factor] = {}
     prismatic = {joint: unit == "m" for joint, unit in zip(joints, units, strict=True)}
@@ -154,7 +234,7 @@ def read_map(path: Path, joints: Sequence[str], units: Sequence[str]) -> tuple[C
     wanted |= {
         name: (column.unit, _si_unit(column.signal, prismatic), f"columns.{name}")
         for name, column in found.columns.items()
-        if column.unit != AMPERE
+        if column.unit not in (AMPERE, PERCENT)
     }
     for name, (unit, own, key) in wanted.items():
         factor = WRITTEN[own].get(unit)
@@ -164,17 +244,21 @@ def read_map(path: Path, joints: Sequence[str], units: Sequence[str]) -> tuple[C
         else:
             factors[name] = Factor(float(factor), own)
     for name, column in found.columns.items():
+        own = _si_unit(column.signal, prismatic)
         if column.constant is not None:
-            factors[name] = Factor(column.constant, _si_unit(column.signal, prismatic))
+            factors[name] = Factor(column.constant, own)
+        if column.scale is not None:
+            factors[name] = Factor(column.scale / 100.0, own)
+        if name in factors:
+            factors[name] = Factor(column.sign * factors[name].factor, own)
     if problems:
-        raise RunnerError(f"{path}: {'; '.join(problems)}")
-    return found, factors
+        raise RunnerError("; ".join(problems))
+    return factors
 
 
 def _unknown_joints(found: ColumnsMap, joints: Sequence[str]) -> Iterator[str]:
     for name, column in found.columns.items():
-        joint = column.joint if column.joint is not None else column.torque
-        if joint is not None and joint not in joints:
+        for joint in [joint for joint in (column.of, *column.coupling) if joint is not None and joint not in joints]:
             yield (
                 f"columns.{name}: the robot has no joint {quoted(joint)}{nearest(joint, joints)}; joints: "
                 f"{', '.join(joints)}"
@@ -184,7 +268,7 @@ def _unknown_joints(found: ColumnsMap, joints: Sequence[str]) -> Iterator[str]:
 def _si_unit(signal: Signal, prismatic: dict[str, bool]) -> str:
     if signal.kind == "tip":
         return "m"
-    if signal.kind == "position":
+    if signal.kind in ("position", "reference"):
         return "m" if prismatic.get(signal.of) else "rad"
     return "N" if prismatic.get(signal.of) else "N m"
 

@@ -1,14 +1,16 @@
 """Comparison of a recording with a run: time alignment, signals, metrics and friction."""
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 
 import numpy as np
+import pinocchio as pin
 
 from runner.base.arrays import FloatArray
 from runner.base.errors import RunnerError
 from runner.recordings.columns_map import Signal, other_units, read_map
+from runner.recordings.consistency import check_consistency
 from runner.recordings.friction import Friction, identify_friction
 from runner.recordings.offset import Offset, find_offset
 from runner.recordings.recording import FEWEST_ROWS, Recording, read_recording
@@ -111,7 +113,7 @@ def compare_recording(run: Run, path: Path, columns: Path, fill_gaps: float = 0.
 
     Args:
         run: The run.
-        path: The recording, CSV or a ROS bag.
+        path: The recording; see read_table.
         columns: What its columns are, YAML; see ColumnsMap.
         fill_gaps: Longest gap of the recording that is filled, in s; 0 for none.
 
@@ -122,7 +124,11 @@ def compare_recording(run: Run, path: Path, columns: Path, fill_gaps: float = 0.
     trace = setting.trace
     said, factors = read_map(columns, trace.joint_names, trace.joint_units)
     recording = read_recording(path, said, factors, fill_gaps)
-    moving = [signal for signal in recording.signals if signal.kind != "torque"]
+    verdict = check_consistency(setting.config.arm.model, recording)
+    if verdict.questions:
+        raise RunnerError(f"{columns}: {' '.join(verdict.questions)}")
+    recording = replace(recording, notes=(*recording.notes, *verdict.notes))
+    moving = [signal for signal in recording.signals if signal.kind in ("position", "tip")]
     if not moving:
         raise RunnerError(f"{columns}: columns: needs the position of a joint, or a coordinate of the tip")
     offset = find_offset(
@@ -137,8 +143,16 @@ def compare_recording(run: Run, path: Path, columns: Path, fill_gaps: float = 0.
     recorded = {
         signal: recording.torque_at(signal, middle) if signal.kind == "torque" else evenly(recording.t, values, at)
         for signal, values in recording.signals.items()
+        if signal.kind != "reference"
     }
-    simulated = {signal: setting.signal(signal)[ticks] for signal in recorded}
+    whole_torques = recording.holds != "without_gravity" and recording.side == "motor"
+    torques = setting.trace.tau if whole_torques else setting.torques(recording.holds, recording.side)
+    simulated = {
+        signal: (torques[:, trace.joint_names.index(signal.of)] if signal.kind == "torque" else setting.signal(signal))[
+            ticks
+        ]
+        for signal in recorded
+    }
     questions = list(other_units(recorded, simulated, recording.columns, recording.units))
     if questions:
         raise RunnerError(f"{columns}: {'; '.join(questions)}")
@@ -150,7 +164,7 @@ def compare_recording(run: Run, path: Path, columns: Path, fill_gaps: float = 0.
         recording=recording,
         offset=offset,
         residuals=[Residual(s, units[s], trace.t[ticks], recorded[s], simulated[s]) for s in recorded],
-        metrics=both_metrics(setting, ticks, recorded, None if q is None else _speeds(recording, q, at)),
+        metrics=both_metrics(setting, ticks, recorded, None if q is None else _speeds(recording, q, at), whole_torques),
         friction=friction,
         no_friction=reason,
         simulated_friction=_simulated_friction(run, trace.joint_names),
@@ -199,6 +213,10 @@ def friction_of(model: RobotModel, recording: Recording) -> tuple[Friction | Non
         recording.torque_at(signal, times) if signal in recording.signals else np.full(len(times), np.nan)
         for signal in signals
     ]
+    if recording.holds == "without_gravity":
+        model = model.with_change(lambda pin_model: setattr(pin_model, "gravity", pin.Motion.Zero()))
+    if recording.side == "link":
+        model = model.with_armature(np.zeros(model.nq))
     return identify_friction(model, even, np.column_stack(torques), recording.period), ""
 
 

@@ -1,209 +1,100 @@
-"""Numeric columns of recordings: CSV files, and joint states of ROS bags.
+"""Tables of logs: text, Parquet, LeRobot folders, mecademicpy's zip files and ROS bags, recognised by content."""
 
-A bag is one of ROS 1, or MCAP or SQLite of ROS 2, one file or a folder. Its columns have the same form as in a CSV
-file: `stamp`, in s, and JOINT.position, JOINT.velocity and JOINT.effort. Messages are read by ROS's published
-definition of sensor_msgs/JointState. The definitions in the bag are not used, because rosbags would make code from
-them.
-"""
-
-import csv
-import math
-from array import array
-from collections.abc import Iterator, Sequence
+import io
+import zipfile
+from collections.abc import Sequence
 from pathlib import Path
-from typing import Any, TextIO
 
-import numpy as np
+from runner.base.errors import RunnerError
+from runner.base.limits import LOG_FILES, RECORDING, ExcessError
+from runner.base.tables import Table, read_text_table
+from runner.recordings.bags import bag_files, read_bag
+from runner.recordings.parquet import INFO, read_lerobot, read_parquet
 
-from runner.base.arrays import FloatArray
-from runner.base.errors import RunnerError, nearest
-from runner.base.limits import BAG_MEMORY, RECORDING, RECORDING_ROW, RECORDING_ROWS, ExcessError, bounded_memory
-from runner.base.sanitize import few, quoted
-from runner.recordings import files_of
-
-_SEPARATORS = ",;\t"
-_MISSING = ("", "nan", "na", "null", "none")
-_MOST_TOLD = 5  # problems of one file
+_FOLDERS = "a bag of ROS 2 (.mcap or .db3 files), or a LeRobot data set (meta/info.json)"
 
 
-def read_csv_columns(path: Path, wanted: Sequence[str]) -> dict[str, FloatArray]:
-    """Return columns of a CSV file whose first line names them; commas, semicolons or tabs separate its cells.
+def is_log_folder(path: Path) -> bool:
+    """Return whether a folder holds a log: a bag, or a LeRobot data set."""
+    return path.is_dir() and ((path / INFO).is_file() or (path / "metadata.yaml").is_file() or bool(bag_files(path)))
 
-    If commas do not separate cells, they may be decimal points.
+
+def is_bag(path: Path) -> bool:
+    """Return whether a recording is a ROS bag, a file or a folder."""
+    if path.is_dir():
+        return not (path / INFO).is_file()
+    return path.is_file() and bool(bag_files(path))
+
+
+def read_table(
+    path: Path, wanted: Sequence[str] | None = None, topic: str | None = None, episode: int | None = None
+) -> Table:
+    """Return the columns of a log.
 
     Args:
-        path: The file.
-        wanted: Names of the columns.
-
-    Returns:
-        Each column by its name; NaN for a cell that says that its number is missing.
+        path: The log, a file or a folder.
+        wanted: The columns to read, each of whose cells holds a number or nothing; None for all that hold numbers.
+        topic: Of a ROS bag: the topic of the joint states; None if it has only one.
+        episode: Of a LeRobot data set: the episode; None for its longest.
 
     Raises:
-        RunnerError: if it cannot be read, lacks a column, or has a cell without a number; names the line.
+        RunnerError: if it is not a known log, cannot be read, or lacks a column; names the line.
     """
     try:
-        if excess := RECORDING.excess(path.stat().st_size):
-            raise ExcessError(f"it {excess}")
-        with path.open(encoding="utf-8-sig", newline="") as file:
-            head = file.readline(RECORDING_ROW.most)
-            file.seek(0)
-            return _columns_of(path, file, max(_SEPARATORS, key=head.count), wanted)
-    except (OSError, ExcessError, UnicodeDecodeError, csv.Error) as error:
+        table = _read(path, wanted, topic, episode)
+    except (OSError, ExcessError, UnicodeError, zipfile.BadZipFile) as error:
         raise RunnerError(f"cannot read {path}: {error}") from error
+    if wanted is not None:
+        table.require(wanted)
+    return table
 
 
-def places_of(path: Path, wanted: Sequence[str], names: Sequence[str]) -> list[int]:
-    """Return the indices of the wanted columns among those of a file.
-
-    Raises:
-        RunnerError: if one is not there, or stands there twice.
-    """
-    twice = [name for name in dict.fromkeys(names) if name in wanted and names.count(name) > 1]
-    problems = [f"line 1 has the column {quoted(name)} more than once" for name in twice]
-    missing = [f"{quoted(name)}{nearest(name, names)}" for name in wanted if name not in names]
-    if missing:
-        problems.append(f"has no column {few(missing)}; its columns: {few(list(names)) or 'none'}")
-    if problems:
-        raise _refused(path, problems)
-    return [names.index(name) for name in wanted]
-
-
-def _refused(path: Path, problems: Sequence[str], count: int = 0) -> RunnerError:
-    """Return the error that names the first problems of a file; `count` is how many it has."""
-    more = max(count, len(problems)) - _MOST_TOLD
-    told = [*problems[:_MOST_TOLD], *([f"{more} more problems like these"] if more > 0 else [])]
-    return RunnerError(f"{path}: {'; '.join(told)}")
-
-
-def _rows(file: TextIO, separator: str) -> Iterator[list[str]]:
-    """Yield the rows of a CSV file, none longer than allowed: quotes can join all lines to one."""
-    held = 0
-
-    def lines() -> Iterator[str]:
-        nonlocal held
-        for number, line in enumerate(file, start=1):
-            held += len(line)
-            if excess := RECORDING_ROWS.excess(number) or RECORDING_ROW.excess(held):
-                raise ExcessError(f"it {excess}")
-            yield line
-
-    for row in csv.reader(lines(), delimiter=separator):
-        held = 0
-        yield row
+def _read(path: Path, wanted: Sequence[str] | None, topic: str | None, episode: int | None) -> Table:
+    if path.is_dir():
+        return _read_folder(path, topic, episode)
+    if path.is_fifo() or path.is_char_device():
+        raise ExcessError("it is a pipe or a device; allowed: files")
+    if bag_files(path):
+        return read_bag(path, topic)
+    if topic is not None:
+        raise RunnerError(f"{path}: topic: is for ROS bags. Allowed: null for other logs.")
+    if excess := RECORDING.excess(path.stat().st_size):
+        raise ExcessError(f"it {excess}")
+    with path.open("rb") as file:
+        head = file.read(4096)
+    if head.startswith(b"PAR1"):
+        return read_parquet(path, episode)
+    if episode is not None:
+        raise RunnerError(f"{path}: episode: is for LeRobot data sets. Allowed: null for other logs.")
+    if head.startswith(b"PK\x03\x04"):
+        return _read_zip(path, wanted)
+    if b"\0" in head:
+        raise RunnerError(f"{path}: is not a known log. Allowed: text, Parquet, a zip of mecademicpy or a ROS bag.")
+    with path.open(encoding="utf-8-sig", errors="replace", newline="") as text:
+        return read_text_table(path, text, wanted)
 
 
-def _columns_of(path: Path, file: TextIO, separator: str, wanted: Sequence[str]) -> dict[str, FloatArray]:
-    rows = _rows(file, separator)
-    names = [name.strip() for name in next(rows, [])]
-    places = list(zip(places_of(path, wanted, names), wanted, strict=True))
-    found = {name: array("d") for name in wanted}
-    problems: list[str] = []
-    told, empty = 0, []
-    for line, cells in enumerate(rows, start=2):
-        if not any(cell.strip() for cell in cells):
-            empty.append(f"line {line}: {len(cells)} cells for {len(names)} columns")
-            continue
-        wrong, empty = empty, []  # at the end of the file they do no harm
-        if len(cells) != len(names):
-            wrong.append(f"line {line}: {len(cells)} cells for {len(names)} columns")
-        for place, name in places if len(cells) == len(names) else ():
-            text = cells[place].strip()
-            found[name].append(_number(text if separator == "," else text.replace(",", ".")))
-            if math.isnan(found[name][-1]) and text.lower() not in _MISSING:
-                wrong.append(f"line {line}: {name} is {quoted(text)}; needed: a finite number")
-        told += len(wrong)
-        problems += wrong[: max(0, _MOST_TOLD - len(problems))]
-    if problems:
-        raise _refused(path, problems, told)
-    return {name: np.array(column) for name, column in found.items()}
+def _read_folder(path: Path, topic: str | None, episode: int | None) -> Table:
+    if (path / INFO).is_file():
+        return read_lerobot(path, episode)
+    count = 0
+    for count, _ in enumerate(path.iterdir(), start=1):
+        if count > LOG_FILES.most:
+            break
+    if count <= LOG_FILES.most and bag_files(path):
+        return read_bag(path, topic)
+    many = f"more than {LOG_FILES.most:,}" if count > LOG_FILES.most else f"{count:,}"
+    raise RunnerError(f"{path}: a folder of {many} files is not a log. Allowed: one file, {_FOLDERS}.")
 
 
-def _number(text: str) -> float:
-    """Return the finite number in a cell; NaN where there is none."""
-    try:
-        number = float(text)
-    except ValueError:
-        return math.nan
-    return number if math.isfinite(number) else math.nan
-
-
-STAMP = "stamp"
-_JOINT_STATE = "sensor_msgs/msg/JointState"
-_FIELDS = ("position", "velocity", "effort")
-
-
-def read_bag_columns(path: Path, topic: str | None, wanted: Sequence[str]) -> dict[str, FloatArray]:
-    """Return columns of the joint states in a bag; NaN where a message says nothing of a joint.
-
-    Messages that name no wanted joint, as those of a gripper on the same topic, are left out. A message counts at the
-    time in its header, or where that is zero at the time at which it was recorded; times count from the first one.
-
-    Args:
-        path: The bag.
-        topic: The topic of the joint states; None where the bag has one alone.
-        wanted: Names of the columns.
-
-    Raises:
-        RunnerError: if rosbags is not installed, the bag cannot be read, or lacks the topic or a column.
-    """
-    try:
-        from rosbags import rosbag1, rosbag2, typesys
-    except ImportError:
-        raise RunnerError(f"{path} is a ROS bag; `pip install 'arm-control-runner[ros]'` installs its reader") from None
-    old = path.suffix.lower() == ".bag"
-    store = typesys.get_typestore(typesys.Stores.ROS1_NOETIC if old else typesys.Stores.ROS2_HUMBLE)
-    deserialize = store.deserialize_ros1 if old else store.deserialize_cdr
-    try:
-        if excess := RECORDING.excess(sum(file.stat().st_size for file in files_of(path))):
-            raise ExcessError(f"it {excess}")
-        with bounded_memory(BAG_MEMORY), (rosbag1 if old else rosbag2).Reader(path) as reader:
-            connections = [each for each in reader.connections if each.msgtype == _JOINT_STATE]
-            chosen = _topic(path, topic, sorted({each.topic for each in connections}))
-            read = reader.messages([each for each in connections if each.topic == chosen])
-            return _columns_of_messages(
-                path, ((time, deserialize(data, _JOINT_STATE)) for _, time, data in read), wanted
-            )
-    except RunnerError:
-        raise
-    except MemoryError as error:
-        raise RunnerError(f"cannot read {path}: it takes more than {BAG_MEMORY.most:,} {BAG_MEMORY.of}") from error
-    except Exception as error:  # a damaged bag raises almost anything in rosbags
-        raise RunnerError(f"cannot read {path}: {error or type(error).__name__}") from error
-
-
-def _topic(path: Path, topic: str | None, topics: Sequence[str]) -> str:
-    if topic in topics or (topic is None and len(topics) == 1):
-        return topic or topics[0]
-    if not topics:
-        raise RunnerError(f"{path}: no topic has messages of the type {_JOINT_STATE}")
-    wrong = "has more than one topic of joint states" if topic is None else f"has no joint states on {quoted(topic)}"
-    raise RunnerError(
-        f"{path}: {wrong}{nearest(topic or '', topics)}; say in the column map topic: one of {few(list(topics))}"
-    )
-
-
-def _columns_of_messages(
-    path: Path, messages: Iterator[tuple[int, Any]], wanted: Sequence[str]
-) -> dict[str, FloatArray]:
-    signals = [name.rpartition(".") for name in wanted if name != STAMP]
-    joints = {joint for joint, _, _ in signals}
-    found = {name: array("d") for name in wanted}
-    known: dict[str, None] = {}
-    first: int | None = None
-    for number, (time, message) in enumerate(messages, start=1):
-        if excess := RECORDING_ROWS.excess(number):
-            raise ExcessError(f"it {excess}")
-        known.update(dict.fromkeys(message.name))
-        if joints.isdisjoint(message.name):
-            continue
-        stamp = message.header.stamp.sec * 10**9 + message.header.stamp.nanosec or time
-        first = stamp if first is None else first
-        places = {joint: place for place, joint in enumerate(message.name)}
-        for joint, _, field in signals:
-            values = getattr(message, field) if field in _FIELDS else ()
-            place = places.get(joint, len(values))
-            found[f"{joint}.{field}"].append(float(values[place]) if place < len(values) else np.nan)
-        if STAMP in found:
-            found[STAMP].append((stamp - first) * 1e-9)
-    places_of(path, wanted, [STAMP, *(f"{joint}.{field}" for joint in known for field in _FIELDS)])
-    return {name: np.array(column) for name, column in found.items()}
+def _read_zip(path: Path, wanted: Sequence[str] | None) -> Table:
+    """Return the largest CSV file in a zip file, which mecademicpy writes together with a description."""
+    with zipfile.ZipFile(path) as archive:
+        texts = [item for item in archive.infolist() if item.filename.lower().endswith(".csv")]
+        if not texts:
+            raise RunnerError(f"{path}: has no CSV file in it. Allowed: a zip of mecademicpy.")
+        largest = max(texts, key=lambda item: item.file_size)
+        if excess := RECORDING.excess(largest.file_size):
+            raise ExcessError(f"it {excess}, unpacked")
+        with archive.open(largest) as file, io.TextIOWrapper(file, encoding="utf-8-sig", newline="") as text:
+            return read_text_table(path, text, wanted, f"{largest.filename} in a zip file")

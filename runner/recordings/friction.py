@@ -37,14 +37,14 @@ from runner.robots.model import RobotModel
 if TYPE_CHECKING:
     import pandas as pd
 
-_FIRST = 5.0  # times the cut-off: that of the low-pass before the equations, which leaves the motion as it is
-_SAMPLES = 4.0  # times that, the fewest samples in a second that the equations are worked out at
+_FIRST = 5.0  # times the cut-off: that of the low-pass before the equations, which leaves the motion unchanged
+_SAMPLES = 4.0  # times that, the fewest samples in a second at which the equations are evaluated
 _STANDSTILL = 0.05  # of a joint's largest speed
 _SLOW = 0.01  # of the largest speed of all joints of its kind: a joint that is slower creeps
-_SPOILT = 3.0  # periods of the cut-off at both ends, where the low-pass knows one side alone
+_SPOILT = 3.0  # periods of the cut-off at both ends, where the low-pass knows only one side
 _CLIPPED = 0.01  # of the rows at an end of the range of torques
 _SAME = 1e-6  # of the range of torques: what differs less is one value, but for rounding
-_PILED = 10  # times the rows beside: rounding alone puts 1.4 times as many at the peak of a sine
+_PILED = 10  # times the rows next to it: rounding itself puts 1.4 times as many at the peak of a sine
 _ONE_WAY = 0.98  # of sgn behind the low-pass: below it the joint has just turned round
 _FEWEST = 10  # rows of a joint in each direction
 _ROUNDING = 1e-5  # of the largest singular value of Y: what is below tells of no mass
@@ -140,7 +140,7 @@ def identify_friction(model: RobotModel, q: FloatArray, torques: FloatArray, per
         if unusable[joint]:
             lacking.append(f"{name}: {unusable[joint]}")
         elif min(np.sum(moving & (speed > 0.0)), np.sum(moving & (speed < 0.0))) < _FEWEST:
-            lacking.append(f"{name}: it moves too little, or in one direction alone")
+            lacking.append(f"{name}: it moves too little, or in only one direction")
         else:
             blocks = (thinned[moving] * period / _BLOCK).astype(np.intp)
             parts.append(_Part(joint, blocks, *(signal[moving] for signal in (residual, speed, sign, masses))))

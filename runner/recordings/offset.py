@@ -30,6 +30,7 @@ _MOST_SAMPLES = 200_000
 _STILL = 0.01  # of the largest speed of the run: a signal that is slower tells nothing of the time
 _OF_LARGEST = 0.25  # of the square of the largest norm
 _AS_GOOD = 0.95  # of the largest correlation
+_MORE_COVERED = 1.25  # times what the best lag covers
 _CLEARLY = 0.9  # correlation of what is the same motion, though maybe at another rate
 _SURELY = 0.98  # above which no other rate is looked for
 _STRETCHES = np.geomspace(0.1, 10.0, 157)  # of time that another rate may mean, 3 % from one to the next
@@ -87,6 +88,7 @@ def find_offset(
     whatever_sign = np.abs(each).sum(axis=1) / max(1, int(np.sum(each.any(axis=0))))
     if correlations[best] < RESEMBLES and whatever_sign.max() > _CLEARLY:
         best = int(np.argmax(whatever_sign))
+    best = _at_full_overlap(best, lags, each, whatever_sign, (t[0], t[-1]), (run_t[0], run_t[-1]))
     against = [name for name, value in zip(names, each[best], strict=True) if value < -RESEMBLES]
     if against:
         raise RunnerError(
@@ -99,6 +101,19 @@ def find_offset(
     peaks, _ = find_peaks(correlations, height=_AS_GOOD * correlations[best])
     rivals = tuple(float(lags[peak]) for peak in peaks if peak != best)
     return Offset(start, lags, correlations, rivals)
+
+
+def _at_full_overlap(
+    best: int, lags: FloatArray, each: FloatArray, whatever_sign: FloatArray, log: Sequence[float], run: Sequence[float]
+) -> int:
+    """Return the place of another lag at which signals fit with opposite signs and much more of both is covered.
+
+    Half a period of a sinusoid looks like a sign: without this an inverted joint would be aligned at another time.
+    """
+    covered = np.minimum(log[1], run[1] + lags) - np.maximum(log[0], run[0] + lags)
+    surely = np.where((whatever_sign > _SURELY) & (each.min(axis=1) < -RESEMBLES), covered, 0.0)
+    other = int(np.argmax(surely * whatever_sign))
+    return other if surely[other] > _MORE_COVERED * covered[best] else best
 
 
 def _correlate(

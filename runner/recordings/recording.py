@@ -9,9 +9,10 @@ from numpy.typing import NDArray
 
 from runner.base.arrays import FloatArray
 from runner.base.errors import RunnerError
-from runner.recordings import BAGS, is_bag
-from runner.recordings.columns_map import ColumnsMap, Factor, Signal, stacked
-from runner.recordings.files import read_bag_columns, read_csv_columns
+from runner.base.tables import Table
+from runner.recordings.clock import Clock, longest_step, read_clock
+from runner.recordings.columns_map import Column, ColumnsMap, Factor, Holds, Side, Signal, stacked
+from runner.recordings.files import read_table
 from runner.recordings.smoothing import CUTOFF, evenly
 from runner.schema.model import LARGEST
 
@@ -20,8 +21,9 @@ LONGEST_FILLED = 1.0 / CUTOFF
 """Longest gap that may be filled, in s: an arm may have moved there and back in a longer one."""
 
 _DECIMALS = 1e-6  # relative error of differences of decimal times
-_GAP = 1.5  # times the usual time between two rows
 _OTHER_RATE = 0.01  # relative difference from the rate that is said
+_STALE = 0.05  # of the rows: from there on rows that repeat the one before are left out
+_NEAR_A_TURN = 0.25  # of a turn: what a step from one row to the next may differ from it, if it is a jump
 
 
 @dataclass(frozen=True)
@@ -36,6 +38,9 @@ class Recording:
         units: The unit that each column is said to have.
         held: Whether torques act from their row to the next one.
         filled: Gaps that were filled, in s.
+        holds: What the torques are.
+        side: The side of the gears on which torques are measured.
+        notes: Messages for a user: what was done to rows and columns.
     """
 
     path: Path
@@ -45,6 +50,9 @@ class Recording:
     units: Mapping[str, Factor]
     held: bool
     filled: Sequence[float]
+    holds: Holds = "torque"
+    side: Side = "motor"
+    notes: Sequence[str] = ()
 
     @property
     def period(self) -> float:
@@ -74,7 +82,7 @@ def read_recording(path: Path, said: ColumnsMap, factors: Mapping[str, Factor], 
     """Return the signals of a recording.
 
     Args:
-        path: The file: CSV, the names of its columns in the first line; or a ROS bag, see ros_bag.
+        path: The log; see read_table.
         said: What its columns are.
         factors: What makes each column SI, by its name.
         fill_gaps: Longest gap that is filled, in s; 0 for none.
@@ -85,88 +93,128 @@ def read_recording(path: Path, said: ColumnsMap, factors: Mapping[str, Factor], 
     """
     if not 0.0 <= fill_gaps <= LONGEST_FILLED:
         raise RunnerError(f"gaps of up to {LONGEST_FILLED:g} s can be filled; found {fill_gaps:g} s")
-    fill_gaps *= 1.0 + _DECIMALS
     wanted = [*([said.time.column] if said.time is not None else []), *said.columns]
-    if is_bag(path):
-        numbers = read_bag_columns(path, said.topic, wanted)
-    elif said.topic is not None:
-        raise RunnerError(f"{path}: topic: is for ROS bags ({', '.join(BAGS)})")
-    else:
-        numbers = read_csv_columns(path, wanted)
-    rows = len(numbers[wanted[0]])
-    if rows < FEWEST_ROWS:
-        raise RunnerError(f"{path}: too short: {rows} rows; needed: {FEWEST_ROWS} or more")
-    filled: list[float] = []
+    return to_recording(read_table(path, wanted, said.topic, said.episode), said, factors, fill_gaps)
+
+
+def to_recording(table: Table, said: ColumnsMap, factors: Mapping[str, Factor], fill_gaps: float = 0.0) -> Recording:
+    """Return the signals in a table; see read_recording."""
+    path, fill_gaps = table.path, fill_gaps * (1.0 + _DECIMALS)
+    time = None if said.time is None else said.time.column
+    table = table.of([*([] if time is None else [time]), *said.columns], time)
+    if len(table) < FEWEST_ROWS:
+        raise RunnerError(f"{path}: too short: {len(table)} rows; needed: {FEWEST_ROWS} or more")
+    clock = _clock(table, said, factors)
+    clock = _without_stale(table, said, clock)
+    t, notes = clock.t, [*table.notes, *clock.notes]
+    if len(t) < FEWEST_ROWS:
+        raise RunnerError(f"{path}: too short: {len(t)} rows at different times; needed: {FEWEST_ROWS} or more")
+    filled = _gaps(table, "rows are", clock, np.arange(len(t)), np.diff(t) > longest_step(_period(t)), fill_gaps)
+    own: dict[Signal, FloatArray] = {}
+    for name, column in said.columns.items():
+        numbers, jumps = _unwrapped(table.columns[name][clock.rows], column, factors[name])
+        if jumps:
+            notes.append(f"{name} jumps by a turn {jumps} times: the jumps are removed")
+        values = _in_si(table, name, numbers - column.zero, factors[name], clock)
+        own[column.signal], gaps = _filled(table, name, clock, values, column.signal, fill_gaps)
+        filled += gaps
+    signals = {
+        column.signal: own[column.signal]
+        + sum(factor * own[Signal(column.signal.kind, joint)] for joint, factor in column.coupling.items())
+        for column in said.columns.values()
+    }
+    columns = {column.signal: name for name, column in said.columns.items()}
+    return Recording(path, t, signals, columns, dict(factors), said.held, filled, said.holds, said.side, notes)
+
+
+def _period(t: FloatArray) -> float:
+    return float(np.median(np.diff(t)))
+
+
+def _clock(table: Table, said: ColumnsMap, factors: Mapping[str, Factor]) -> Clock:
     if said.time is None:
         assert said.rate is not None  # noqa: S101 - the map has one of both
-        t = np.arange(rows) / said.rate
-    else:
-        # From the first row on: a clock that began in 1970 leaves too few digits for times between rows.
-        stamps = numbers[said.time.column]
-        t = _in_si(path, said.time.column, stamps - stamps[0], factors[said.time.column])
-        filled = _check_time(path, t, said, fill_gaps)
-    signals = {}
-    for name, column in said.columns.items():
-        values = _in_si(path, name, numbers[name], factors[name])
-        signals[column.signal], gaps = _filled(path, name, t, values, column.signal, fill_gaps)
-        filled += gaps
-    columns = {column.signal: name for name, column in said.columns.items()}
-    return Recording(path, t, signals, columns, dict(factors), said.torque == "held", filled)
+        return Clock(np.arange(len(table)) / said.rate, np.arange(len(table)), [])
+    # From the first row on: a clock that began in 1970 leaves too few digits for times between rows.
+    stamps = table.columns[said.time.column]
+    rows = np.arange(len(stamps))
+    first = stamps[~np.isnan(stamps)][:1]
+    t = _in_si(table, said.time.column, stamps - first, factors[said.time.column], Clock(stamps, rows, []))
+    try:
+        clock = read_clock(t, table.place)
+    except RunnerError as error:
+        raise RunnerError(f"{table.path}: {error}") from None
+    steps = np.diff(clock.t)
+    usual = [float(np.median(steps)), float(steps.mean())]
+    if said.rate is not None and min(abs(said.rate * period - 1.0) for period in usual) > _OTHER_RATE:
+        raise RunnerError(
+            f"{table.path}: its rows come at {1.0 / usual[0]:.4g} Hz by the column of time in {said.time.unit}, and "
+            f"rate says {said.rate:.4g} Hz; leave out rate, or correct the unit of the time"
+        )
+    return clock
 
 
-def _in_si(path: Path, name: str, numbers: FloatArray, factor: Factor) -> FloatArray:
+def _without_stale(table: Table, said: ColumnsMap, clock: Clock) -> Clock:
+    """Leave out rows that repeat the positions of the row before in the midst of motion, if there are many."""
+    moving = [name for name, column in said.columns.items() if column.signal.kind in ("position", "tip")]
+    if said.time is None or not moving:
+        return clock
+    values = np.column_stack([table.columns[name][clock.rows] for name in moving])
+    same = (np.diff(values, axis=0) == 0.0).all(axis=1)
+    stale = np.append(False, same) & ~np.append(np.append(False, False), same[:-1]) & ~np.append(same[1:], (True, True))
+    if stale.sum() <= _STALE * len(stale):
+        return clock
+    note = f"{stale.sum()} rows repeat the positions of the row before, in motion, and are left out"
+    return Clock(clock.t[~stale], clock.rows[~stale], [*clock.notes, note])
+
+
+def _unwrapped(numbers: FloatArray, column: Column, factor: Factor) -> tuple[FloatArray, int]:
+    """Return a column without its jumps by a turn, and their number."""
+    if column.signal.kind not in ("position", "reference") or (column.wrap is None and factor.unit != "rad"):
+        return numbers, 0
+    turn = column.wrap or 2.0 * np.pi / abs(factor.factor)
+    known = np.flatnonzero(~np.isnan(numbers))
+    steps = np.diff(numbers[known])
+    turns = np.where(np.abs(np.abs(steps) - turn) < _NEAR_A_TURN * turn, np.sign(steps), 0.0)
+    going_on = numbers.copy()
+    going_on[known[1:]] -= turn * np.cumsum(turns)
+    return going_on, int(np.sum(turns != 0.0))
+
+
+def _in_si(table: Table, name: str, numbers: FloatArray, factor: Factor, clock: Clock) -> FloatArray:
     """Return a column in SI units, none of whose numbers is beyond reason."""
     with np.errstate(over="ignore"):
         values: FloatArray = numbers * factor.factor
     beyond = np.abs(values) > LARGEST
     if beyond.any():
         row = int(np.argmax(beyond))
-        where = f"{path}: {_place(path, row)}: {name} is {values[row]:.4g} {factor.unit}"
+        where = f"{table.path}: {table.place(int(clock.rows[row]))}: {name} is {values[row]:.4g} {factor.unit}"
         raise RunnerError(f"{where}{_and_more(int(beyond.sum()))}; allowed: up to {LARGEST:g} in magnitude")
     return values
 
 
-def _check_time(path: Path, t: FloatArray, said: ColumnsMap, fill_gaps: float) -> list[float]:
-    """Return the gaps in time that are to be filled, in s."""
-    steps = np.diff(t)
-    back = np.flatnonzero(~(steps > 0.0))
-    if len(back):
-        row = int(back[0])
-        raise RunnerError(
-            f"{path}: {_place(path, row + 1)}: the time is {t[row + 1]:g} s after {t[row]:g} s; time must increase "
-            f"from row to row{_and_more(len(back))}"
-        )
-    period = float(np.median(steps))
-    if said.rate is not None and abs(said.rate * period - 1.0) > _OTHER_RATE:
-        unit = said.time.unit if said.time is not None else ""
-        raise RunnerError(
-            f"{path}: its rows come at {1.0 / period:.4g} Hz by the column of time in {unit}, and rate says "
-            f"{said.rate:.4g} Hz; leave out rate, or correct the unit of the time"
-        )
-    return _gaps(path, "rows are", t, np.arange(len(t)), steps > _GAP * period, fill_gaps)
-
-
 def _filled(
-    path: Path, name: str, t: FloatArray, values: FloatArray, signal: Signal, fill_gaps: float
+    table: Table, name: str, clock: Clock, values: FloatArray, signal: Signal, fill_gaps: float
 ) -> tuple[FloatArray, list[float]]:
     """Return a signal without gaps, and the gaps that it had, in s."""
-    missing = np.isnan(values)
+    t, missing = clock.t, np.isnan(values)
     if missing[[0, -1]].any():
-        where = f"{_place(path, int(np.argmax(missing)))}: {name} is missing, in {missing.sum()} of {len(t)} rows"
-        raise RunnerError(f"{path}: {where} and at an end; leave out the column, or cut the recording")
+        first = table.place(int(clock.rows[int(np.argmax(missing))]))
+        where = f"{first}: {name} is missing, in {missing.sum()} of {len(t)} rows"
+        raise RunnerError(f"{table.path}: {where} and at an end; leave out the column, or cut the recording")
     if not missing.any():
         return values, []
     kept = np.flatnonzero(~missing)
-    gaps = _gaps(path, f"{name} is", t, kept, np.diff(kept) > 1, fill_gaps)
+    gaps = _gaps(table, f"{name} is", clock, kept, np.diff(kept) > 1, fill_gaps)
     straight = signal.kind == "torque"
     return np.interp(t, t[kept], values[kept]) if straight else evenly(t[kept], values[kept], t), gaps
 
 
 def _gaps(
-    path: Path, what: str, t: FloatArray, kept: NDArray[np.intp], wide: NDArray[np.bool_], fill_gaps: float
+    table: Table, what: str, clock: Clock, kept: NDArray[np.intp], wide: NDArray[np.bool_], fill_gaps: float
 ) -> list[float]:
     """Return the lengths of the wide steps between the kept rows, in s, if none exceeds the filled length."""
-    steps = np.diff(t[kept])
+    steps = np.diff(clock.t[kept])
     longer = np.flatnonzero(wide & (steps > fill_gaps))
     if len(longer):
         first, longest = int(longer[0]), float(steps[longer].max())
@@ -175,15 +223,10 @@ def _gaps(
             needed = np.ceil(1e3 * longest * (1.0 - _DECIMALS))
             remedy = f"`--fill-gaps {needed:.0f}ms` fills the gaps; or {remedy}"
         raise RunnerError(
-            f"{path}: {_place(path, int(kept[first]) + 1)}: {what} missing for {steps[first]:.4g} s"
-            f"{_and_more(len(longer))}, where rows are {np.median(np.diff(t)):.4g} s apart; {remedy}"
+            f"{table.path}: {table.place(int(clock.rows[kept[first] + 1]))}: {what} missing for {steps[first]:.4g} s"
+            f"{_and_more(len(longer))}, where rows are {_period(clock.t):.4g} s apart; {remedy}"
         )
     return [float(step) for step in steps[wide]]
-
-
-def _place(path: Path, row: int) -> str:
-    """Return the line of a row of numbers; the first line of a CSV file names its columns."""
-    return f"row {row + 1}" if is_bag(path) else f"line {row + 2}"
 
 
 def _and_more(count: int) -> str:

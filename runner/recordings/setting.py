@@ -4,6 +4,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass, replace
 
 import numpy as np
+import pinocchio as pin
 
 from runner.base.arrays import FloatArray
 from runner.base.errors import ConfigError, RunnerError
@@ -13,7 +14,8 @@ from runner.config.validation import validate
 from runner.metrics import effort, positioning, tracking
 from runner.metrics.family import MetricContext
 from runner.metrics.summary import measure, of_run
-from runner.recordings.columns_map import Signal, stacked
+from runner.recordings.columns_map import Holds, Side, Signal, stacked
+from runner.recordings.smoothing import derivative
 from runner.robots.robot import end_points
 from runner.simulation.assembly import metric_context
 from runner.simulation.recorder import describe
@@ -35,6 +37,17 @@ class Setting:
     config: RunConfig
     trace: Trace
     context: MetricContext
+
+    def torques(self, holds: Holds, side: Side) -> FloatArray:
+        """Return the torques of the run as sensors of a kind would measure them, shape (T, nq), in N m; see Column."""
+        model, q, dq, tau = self.config.arm.model, self.trace.q, self.trace.dq, self.trace.tau
+        if side == "link":
+            ddq = derivative(dq, float(np.median(np.diff(self.trace.t))))
+            rigid = model.with_armature(np.zeros(model.nq)).pin_model
+            tau = np.array([pin.rnea(rigid, rigid.createData(), *row) for row in zip(q, dq, ddq, strict=True)])
+        if holds == "without_gravity":
+            tau = tau - np.array([model.gravity_torque(row) for row in q])
+        return tau
 
     def signal(self, wanted: Signal) -> FloatArray:
         """Return a signal of the run, shape (T,)."""
@@ -86,11 +99,15 @@ _OF_TICKS = ("torque_chatter", "force_chatter")
 
 
 def both_metrics(
-    setting: Setting, ticks: slice, recorded: Mapping[Signal, FloatArray], speeds: FloatArray | None
+    setting: Setting,
+    ticks: slice,
+    recorded: Mapping[Signal, FloatArray],
+    speeds: FloatArray | None,
+    whole_torques: bool = True,
 ) -> dict[str, tuple[float | None, float | None]]:
     """Return each metric of the run and of the recording, by name, over some ticks of the run.
 
-    A metric is left out where the recording lacks a signal that it is worked out from, and where it counts changes
+    A metric is left out where the recording lacks a signal that it is computed from, and where it counts changes
     from tick to tick. The tip is the recorded one, or follows from all joints by the run's model.
 
     Args:
@@ -98,6 +115,7 @@ def both_metrics(
         ticks: The ticks of the run that the recording covers.
         recorded: Its signals at these, shape (T,).
         speeds: Its joint speeds there, shape (T, nq), in rad/s; None where not all positions are recorded.
+        whole_torques: Whether its torques are those of the motors, with gravity.
     """
     run = setting.trace.during(ticks)
     joints = run.joint_names
@@ -109,10 +127,10 @@ def both_metrics(
         points[-1] = tip
     known = {
         **dict.fromkeys((*positioning.UNITS, *tracking.UNITS), tip is not None or q is not None),
-        **dict.fromkeys(effort.UNITS, q is not None and tau is not None),
+        **dict.fromkeys(effort.UNITS, q is not None and tau is not None and whole_torques),
         **dict.fromkeys(_OF_POSITIONS, q is not None),
         **dict.fromkeys(_OF_TICKS, False),
-        "saturation_fraction": tau is not None and bool(np.isfinite(run.limits).any()),
+        "saturation_fraction": tau is not None and whole_torques and bool(np.isfinite(run.limits).any()),
     }
     other = replace(
         run,

@@ -10,12 +10,20 @@ FIT = (
     "identification; 1: the same, 0: the mean would be as good"
 )
 ONE_LOG = (
-    "The intervals are of this recording alone: what differs between recordings, such as temperature, load and range "
+    "The intervals describe only this recording: what differs between recordings, such as temperature, load and range "
     "of motion, shows only when several are compared."
 )
 AMONG_MASSES = (
     "Friction is fitted to the residual torques, the recorded ones less those of the run's model, together with "
     "differences of the links' masses and inertias."
+)
+
+WITHOUT_GRAVITY = (
+    "The recorded torques are without gravity. Gravity is left out of the run's torques as well; masses cannot be "
+    "compared."
+)
+BEHIND_GEARS = (
+    "The sensors are behind the gears. The friction of the gears and the inertia of the rotors are in neither torque."
 )
 
 
@@ -33,13 +41,15 @@ def aligned_text(found: RecordingComparison) -> str:
         others = ", ".join(quantity(rival, "s", digits=5) for rival in offset.rivals)
         text += f"; the motion repeats itself: it fits nearly as well with time 0 at {others}"
     if recording.filled:
-        text += f"; {len(recording.filled)} gaps of up to {quantity(max(recording.filled), 's')} are filled"
+        many = len(recording.filled) > 1
+        gaps = f"{len(recording.filled)} gap{'s' * many} of up to {quantity(max(recording.filled), 's')}"
+        text += f"; {gaps} {'are' if many else 'is'} filled"
     if recording.held and any(signal.kind == "torque" for signal in recording.signals):
         text += (
             f"; torques are taken as held from row to row, so that they count {quantity(recording.torque_shift, 's')} "
             "later (torque: instant in the column map leaves them where they are)"
         )
-    return text
+    return "; ".join([text, *recording.notes])
 
 
 def friction_lines(found: RecordingComparison) -> Iterator[str]:
@@ -48,6 +58,10 @@ def friction_lines(found: RecordingComparison) -> Iterator[str]:
         yield f"Friction cannot be identified: {found.no_friction}."
         return
     if found.friction.joints:
+        if found.recording.holds == "without_gravity":
+            yield WITHOUT_GRAVITY
+        if found.recording.side == "link":
+            yield BEHIND_GEARS
         yield AMONG_MASSES
         yield ONE_LOG
     for reason in found.friction.lacking:

@@ -14,6 +14,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from runner.base.arrays import FloatArray as FloatArray
+from runner.reporting.answer_map import AnswerMap
 from runner.reporting.charts.figure import Curves as Curves
 from runner.reporting.charts.figure import Map as Map
 from runner.reporting.charts.figure import Maps as Maps
@@ -45,7 +46,7 @@ class Items:
 
 @dataclass(frozen=True)
 class Code:
-    """A string that is shown as it is typed, and can be copied.
+    """A string that is shown as typed, and can be copied.
 
     Attributes:
         text: The text.
@@ -347,11 +348,12 @@ class Document:
         subtitle: One line below it.
         abstract: The report in a few sentences, each line a paragraph; inline mathematics as in Text.
         sections: The chapters.
-        date: Date of the newest run behind it, ISO format, so that a report remade is the same; empty where none is.
+        date: Date of its newest run, ISO format, so that a report remade is the same; empty where none is.
         cover: The picture of the first screen.
         key_numbers: Numbers of the first screen: what each is, its value with unit, and what is to be said of it.
         shown: Number of chapters that HTML shows; it folds the others behind "All details". None shows all.
         notes: Lines below the count of verdicts there: what their words mean, caveats; inline mathematics as in Text.
+        map: Map of answers, below the first paragraph of the abstract.
     """
 
     title: str
@@ -363,6 +365,7 @@ class Document:
     notes: Sequence[str] = ()
     key_numbers: Sequence[tuple[str, str, str]] = ()
     shown: int | None = None
+    map: AnswerMap | None = None
 
     @property
     def answers(self) -> Sequence[Notice]:

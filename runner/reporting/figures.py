@@ -17,7 +17,6 @@ AXES = ("x", "y", "z")
 _LAST, _LAST_ROWS = 0.02, 20  # s and rows before a failure
 _STILLS = 6  # instants in the still picture of a motion
 _FRAMES = 30
-_MOST_JOINTS = 5  # panels of torques of several runs
 
 
 def origin(job: Run | Calibration, number: str = "") -> Origin:
@@ -69,13 +68,28 @@ def last_moments(run: Run, failed_at: float) -> Curves:
     """
     start = max(0.0, min(failed_at - _LAST, float(run.t[-min(len(run.t), _LAST_ROWS)])))
     caption = "The last moments before the failure, repetition 0. A curve that leaves the axes diverges."
-    shown = torque_and_error(run, caption)
+    return _cut(torque_and_error(run, caption), start, failed_at)
+
+
+def until_failure(run: Run, failed_at: float) -> Curves:
+    """Return torques and tip error of a failed run from its start, with vertical axes as of its last moments.
+
+    Args:
+        run: The run.
+        failed_at: Time of the failure, in s.
+    """
+    caption = "Torque of each joint and tip position error up to the failure, repetition 0."
+    return _cut(torque_and_error(run, caption), 0.0, failed_at)
+
+
+def _cut(shown: Curves, start: float, end: float) -> Curves:
+    """Return curves over a time, in s; the vertical axes end at four times the median size of the values."""
     panels = []
     for panel in shown.panels:
         values = np.abs(np.concatenate([each.y[each.x >= start] for each in panel.series]))
         sound = values[np.isfinite(values) & (values > 0.0)]
         size = 4.0 * float(np.median(sound)) if len(sound) else 1.0
-        panels.append(replace(panel, x_range=(start, failed_at), y_range=(-size, size)))
+        panels.append(replace(panel, x_range=(start, end), y_range=(-size, size)))
     return replace(shown, panels=panels)
 
 
@@ -153,7 +167,7 @@ def overlaid(runs: Sequence[Run], names: Sequence[str]) -> list[Block]:
     panels = [Panel("Tip error", "time (s)", "tip error (m)", error)]
     joints = min(len(run.provenance["joints"]) for run in runs)
     units = {run.units[f"tau{joint + 1}"] for run in runs for joint in range(joints)}
-    for joint in range(min(joints, _MOST_JOINTS)) if len(units) == 1 else ():
+    for joint in range(joints) if len(units) == 1 else ():
         (unit,) = units
         what = "Force" if unit == "N" else "Torque"
         torques = [Series(name, run.t, run.joints("tau")[:, joint], color=place)

@@ -24,7 +24,7 @@ _POINTS = 400  # of a path
 
 
 def playback_spec(playback: Playback) -> Json:
-    """Return what the page's script draws: a motion for each run, and the direction of the first view, in rad."""
+    """Return the data for the page's script: a motion for each run, and the direction of the first view, in rad."""
     azimuth, elevation = first_view(playback)
     return {
         "runs": [_motion(each) for each in (playback, *playback.others)],

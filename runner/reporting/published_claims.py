@@ -89,7 +89,7 @@ class Extent(StrictModel):
     tolerance: PositiveFloat
 
     def met(self, path: NDArray[np.float64]) -> bool:
-        """Tell whether a path, shape (T, 3), in m, has this extent; one that has gaps (NaN) has not."""
+        """Return True if a path, shape (T, 3), in m, has this extent; False if it has gaps (NaN)."""
         values = path[:, "xyz".index(self.axis)]
         low, high = values.min(), values.max()
         wide = bool(abs(high - low - self.span) <= self.tolerance)
@@ -107,7 +107,7 @@ class PublishedClaim(Simulation):
         printed: The printed value, or the two ends of the printed range; empty where the source compares in words.
         unit: Its unit.
         experiment: See Simulation, also for `run` and `metric`; a range is compared by its upper end, the worst axis.
-        extents: Where it says how the tip moves, in place of a metric.
+        extents: Where it says how the tip moves, instead of a metric.
         fails: Whether it says that this motion is not met.
         reason: What the comparison shows; inline mathematics between dollar signs.
         like: Set where the source compares in words: the run that it is said to be like.
@@ -218,7 +218,7 @@ def judge_motion(
 
     Returns:
         "source contradicts itself" when its own desired path is another motion; else "matches" where the tip moves as
-        told, or fails to where the source says so, and "differs" where not.
+        stated, or fails to where the source says so, and "differs" where not.
     """
     met = all(extent.met(tip) for extent in extents)
     if not fails and not all(extent.met(desired) for extent in extents):
@@ -227,7 +227,7 @@ def judge_motion(
 
 
 def compared_with(claim: PublishedClaim, simulated: Simulated) -> float | None:
-    """Return what a claim's simulated value is held against: the printed value, or the run that it is said to be like.
+    """Return the reference of a claim's simulated value: the printed value, or the run that it is said to be like.
 
     None where that run has no value.
     """
@@ -235,13 +235,13 @@ def compared_with(claim: PublishedClaim, simulated: Simulated) -> float | None:
 
 
 def scale_bound(bound: Bound, claims: Sequence[PublishedClaim], simulated: Simulated) -> float | None:
-    """Return what the simulated number of the other claim that a bound names leads one to expect."""
+    """Return the number to expect from the simulated number of the other claim that a bound names."""
     value = simulated(*_other(bound, claims).simulated_by)
     return None if value is None else value * bound.scale
 
 
 def expected_value(claim: PublishedClaim, claims: Sequence[PublishedClaim], simulated: Simulated) -> float | None:
-    """Return what the source's other number, or the simulated one in its place where larger, lets one expect.
+    """Return the number to expect from the source's other number, or from the simulated one where that is larger.
 
     None where the claim has no bound.
     """

@@ -7,9 +7,8 @@ import numpy as np
 
 from runner.base.quantities import above_rounding, label_with_unit, quantity
 from runner.plugins.metric_units import unit_of
-from runner.recordings import files_of, words
+from runner.recordings import digest_of, words
 from runner.recordings.compare import RecordingComparison, Residual
-from runner.recordings.recording import Recording
 from runner.reporting.charts.figure import spaced_indices
 from runner.reporting.document import Block, Curves, Document, Notice, Panel, Provenance, Section, Series, Table, Text
 from runner.reporting.figures import origin
@@ -48,7 +47,8 @@ def report_folder(found: RecordingComparison) -> Path:
     recording = found.recording
     said = (found.run.hash, found.offset.start, recording.torque_shift, recording.filled, dict(recording.units))
     content = hashlib.sha256(f"recording {said!r} ".encode())
-    content.update(_bytes_of(recording))
+    for signal in (recording.t, *recording.signals.values()):
+        content.update(signal.tobytes())
     return report_place(outputs_of(found.run.folder), content.hexdigest()[:24])
 
 
@@ -57,10 +57,6 @@ def _abstract(found: RecordingComparison) -> str:
     if found.friction is None:
         return f"{text} {next(words.friction_lines(found))}"
     return text
-
-
-def _bytes_of(recording: Recording) -> bytes:
-    return b"".join(file.read_bytes() for file in files_of(recording.path))
 
 
 def _key_numbers(found: RecordingComparison) -> list[tuple[str, str, str]]:
@@ -145,7 +141,7 @@ def _made(found: RecordingComparison) -> list[Block]:
         ("recording", recording.path.name),
         ("rows", str(len(recording.t))),
         ("time between rows", quantity(recording.period, "s", digits=4)),
-        ("SHA-256", hashlib.sha256(_bytes_of(recording)).hexdigest()),
+        ("SHA-256", digest_of(recording.path)),
     ]
     columns = [
         [column, signal.words, f"{recording.units[column].factor:.6g}", recording.units[column].unit]

@@ -182,6 +182,7 @@ def render_pdf(document: Document) -> bytes:
                 formula_valid=lambda text, is_displayed: made[is_displayed].get(text) is not None,
                 figure_file=figure_file,
                 first_runs=first_runs,
+                palette=palette.LIGHT,
                 image_file=image_file,
             )
         )

@@ -8,6 +8,7 @@ from pathlib import Path
 
 from runner.base import progress
 from runner.base.errors import RunnerError, StoreError
+from runner.base.quantities import with_powers
 from runner.base.sanitize import one_line
 from runner.reporting.figures import playback
 from runner.reporting.metric_titles import key_metrics
@@ -75,6 +76,13 @@ class Row:
         numbers = [self.runs, str(self.caveats), str(self.failed), self.size, self.state]
         return [self.when, self.entry.kind, shorten(self.what, _LONGEST), shorten(self.answer, _LONGEST), *numbers]
 
+    @property
+    def standing(self) -> str:
+        """State, failed runs, caveats and size in a few words."""
+        parts = [self.state, f"{self.failed} failed" if self.failed else ""]
+        parts += [f"{self.caveats} with caveats" if self.caveats else "", self.size]
+        return ", ".join(filter(None, parts))
+
 
 HEADER = ("when", "kind", "what", "answer", "runs", "caveats", "failed", "size", "state")
 """Heads of the columns of `Row.cells`."""
@@ -131,7 +139,7 @@ def _row(entry: Entry, sizes: Mapping[str, int]) -> Row:
 
 def _run_row(entry: Entry, run: Run) -> Row:
     found = key_metrics(run, 1)
-    answer = run.failure or "; ".join(f"{name} {value}" for name, value, _ in found)
+    answer = with_powers(run.failure or "") or "; ".join(f"{name} {value}" for name, value, _ in found)
     failed = int(run.status == "failed")
     return Row(entry, " ".join(run.overrides), answer, f"1 x {run.repetitions}", len(run.caveats), failed)
 
@@ -160,7 +168,10 @@ def write_page(rows: Sequence[Row], outputs: Path, path: Path) -> None:
     progress.begin("writing the page")
     listed = [
         {
-            "cells": row.cells,
+            "when": row.when,
+            "kind": row.entry.kind,
+            "runs": row.runs,
+            "standing": row.standing,
             "what": row.what,
             "answer": row.answer,
             "folder": os.path.relpath(row.entry.folder, Path.cwd()),
@@ -175,7 +186,6 @@ def write_page(rows: Sequence[Row], outputs: Path, path: Path) -> None:
         .get_template("results.html.j2")
         .render(
             rows=listed,
-            header=HEADER,
             outputs=outputs.resolve().name,
             script=script,
             policy=script_policy([script]),

@@ -16,11 +16,13 @@ from runner.config.compose.compose import compose
 from runner.metrics.caveats.versions import changes_since
 from runner.metrics.rounding import SENSITIVE, STEP
 from runner.reporting.document import Block, Code, Cover, Document, Notice, Provenance, Section, Table, Text
-from runner.reporting.figures import cover, desired_motion, last_moments, playback, torque_and_error
+from runner.reporting.figures import cover, desired_motion, last_moments, playback, torque_and_error, until_failure
+from runner.reporting.limiting_joint import nearest_to_limit
 from runner.reporting.markup import literal
 from runner.reporting.metric_titles import capital, key_metrics, title
 from runner.reporting.plant_step import describe_plant, percent
 from runner.reporting.spec_blocks import spec_abstract, spec_blocks
+from runner.reporting.sweep.stability import UNSTABLE
 from runner.reporting.table import Column, numbers
 from runner.reporting.words import PLANT, in_words, join_values
 from runner.store import Run
@@ -48,7 +50,7 @@ def run_document(run: Run) -> Document:
         notes=[literal(f"Caveats: {', '.join(_spaced(caveat['rule']) for caveat in run.caveats)}.")]
         if run.caveats
         else [],
-        key_numbers=[*key_metrics(run, _KEY_METRICS)],
+        key_numbers=[*key_metrics(run, _KEY_METRICS), *filter(None, [nearest_to_limit(run)])],
     )
 
 
@@ -67,7 +69,7 @@ def _abstract(run: Run) -> str:
     """Return the end of the run, the number of kept bounds of its spec, and the comparison with its baseline."""
     count = run.record["repetitions"]
     if run.status == "failed":
-        ended = f"The run {run.failure}."
+        ended = with_powers(f"The run {run.failure}.") + "".join(f" {text}" for text in _remedies(run))
     else:
         ended = (
             "One repetition, which finished."
@@ -84,6 +86,19 @@ def _abstract(run: Run) -> str:
     wrong = [title(finding.metric) for finding in found if not finding.good]
     where = f"; outside are: {', '.join(wrong)}" if wrong else ""
     return f"{ended} {len(found) - len(wrong)} of {len(found)} metrics lie in the bands of {baseline.name}{where}."
+
+
+def _remedies(run: Run) -> list[str]:
+    """Return why a run diverges, with the bounds of its keys, if the law's own bound is known."""
+    found = [float(one["value"]) for one in run.caveats if one["rule"] == UNSTABLE]
+    controller = run.config["controller"]
+    given = [(key, controller.get(key)) for key in ("natural_frequency", "period")]
+    bounds = [f"controller.{key} below {number(value / ratio, 3)}" for ratio in found for key, value in given
+              if isinstance(value, int | float)]  # fmt: skip
+    if not bounds:
+        return []
+    return [f"Its velocity loop is unstable: the gain is {number(found[0], 2)} times too large for the period. Stable, "
+            f"if no torque is at its limit: {' or '.join(bounds)}."]  # fmt: skip
 
 
 def _cover(run: Run) -> Cover:
@@ -124,8 +139,10 @@ def run_blocks(run: Run) -> list[Block]:
     blocks += caveat_notices(run)
     if failure is not None and failure["repetition"] == 0 and failure["time"]:
         blocks.append(last_moments(run, float(failure["time"])))
-    blocks.append(torque_and_error(run, "Torque of each joint and tip position error, repetition 0."))
-    if config["trajectory"]["kind"] != "goal":
+        blocks.append(until_failure(run, float(failure["time"])))
+    else:
+        blocks.append(torque_and_error(run, "Torque of each joint and tip position error, repetition 0."))
+    if config["trajectory"]["kind"] != "goal" and failure is None:
         blocks.append(desired_motion(run, "Desired motion of the tip."))
     blocks.append(playback(run, "The motion of repetition 0."))
     blocks += spec_blocks(run)
@@ -242,7 +259,7 @@ def _seeds(seeds: set[int]) -> str:
 
 
 def _yaml(value: Any) -> str:
-    """Return a value as it is given in YAML or on the command line."""
+    """Return a value as given in YAML or on the command line."""
     text = value if isinstance(value, str) else json.dumps(value, ensure_ascii=False)
     return re.sub(r"\b(\d)0{6,}\.0\b", lambda found: f"{float(found[0]):.0e}".replace("e+0", "e"), text)
 
@@ -251,7 +268,7 @@ def changed_keys(run: Run) -> dict[str, tuple[Any, Any]] | None:
     """Return the keys that differ from what the run's groups hold by themselves, each as (default, value).
 
     Returns:
-        The keys; None where the groups cannot be composed here, as those of a config folder of one's own.
+        The keys; None where the groups cannot be composed here, such as those of the user's config folder.
     """
     choices = run.provenance.get("choices", {})
     try:

@@ -9,13 +9,21 @@ from runner import store
 from runner.base import progress
 from runner.base.errors import RunnerError
 from runner.reporting import render
-from runner.reporting.comparison.sweeps import letter
+from runner.reporting.comparison.sweeps import measure_compared
 from runner.reporting.document import Document
+from runner.store.axes import axes_of, find_axis
 from runner.store.kinds import kind_of, note, outputs_of, report_place
-from runner.sweeps.measurements import measure_stored
+from runner.sweeps.finer_step import work_out, work_out_sweep
+from runner.sweeps.question import keep_question
 
 
-def write(folders: Sequence[Path], metrics: Sequence[str], formats: Sequence[str], output: Path | None = None) -> Path:
+def write(
+    folders: Sequence[Path],
+    metrics: Sequence[str],
+    formats: Sequence[str],
+    output: Path | None = None,
+    by: Sequence[str] = (),
+) -> Path:
     """Write the report on some runs, sweeps or one tuning; return its folder.
 
     Args:
@@ -23,14 +31,29 @@ def write(folders: Sequence[Path], metrics: Sequence[str], formats: Sequence[str
         metrics: What a sweep is compared by; the first ranks it.
         formats: "html", "pdf" or both.
         output: Folder to write to; None for one in `reports/` of the outputs folder.
+        by: Axis that one sweep asks about from now on; empty for its question.
 
     Raises:
-        RunnerError: if a folder is none of these, or damaged; for an unknown metric or format.
+        RunnerError: if a folder is none of these, or damaged; for an unknown metric, axis or format.
     """
+    if by:
+        _ask(folders, by)
     document, folder = compose_report(folders, metrics, output)
     render.write_report(document, folder, formats)
     note(folder)
     return folder
+
+
+def _ask(folders: Sequence[Path], by: Sequence[str]) -> None:
+    """Store the axis that a sweep asks about.
+
+    Raises:
+        RunnerError: If there is not one sweep and one of its axes.
+    """
+    if len(folders) != 1 or len(by) != 1 or kind_of(folders[0]) != "sweep":
+        raise RunnerError(f"--by: not for these results ({','.join(by)}). Allowed: one axis of one sweep.")
+    sweep = store.open_sweep(folders[0])
+    keep_question(sweep, find_axis(axes_of(sweep.overrides)[0], by[0], "--by").name)
 
 
 def compose_report(
@@ -66,16 +89,19 @@ def compose_report(
         from runner.reporting.run_report import run_document
 
         progress.begin("reading runs")
+        if len(runs) > 1:
+            work_out(runs[0].outputs, runs)
         document = run_document(runs[0]) if len(runs) == 1 else runs_document(runs)
     elif len(sweeps) == 1:
         from runner.reporting.sweep.report import sweep_document
 
+        work_out_sweep(sweeps[0])
         address = os.path.relpath(sweeps[0].outputs / "runs", place) + "/"
         document = sweep_document(sweeps[0], metrics, address)
     else:
         from runner.reporting.comparison.report import comparison_document
 
-        sides = [measure_stored(sweep, letter(place)) for place, sweep in enumerate(sweeps)]
+        sides = measure_compared(sweeps)
         document = comparison_document(sides, metrics)
     return document, place
 

@@ -1,6 +1,8 @@
 """Jinja2 environments: HTML with autoescape, and Typst with every string quoted."""
 
+import html
 import re
+from collections.abc import Callable
 from functools import cache
 from typing import Any
 
@@ -14,11 +16,16 @@ from runner.reporting.markup import spans
 from runner.reporting.outline import verdict_place
 from runner.reporting.verdicts import WORDS
 
+_BEFORE_UNIT = re.compile(
+    r"(?<=[\d⁰¹²³⁴⁵⁶⁷⁸⁹]) (?=(?:%|[mµ]?m|[mµ]?s|m/s²?|N²?|rad(?:/s)?|J|kg|Hz|°|pairs?)(?![\w/]))", re.ASCII
+)
+_INSIDE_UNIT = re.compile(r"(?<=[\d⁰¹²³⁴⁵⁶⁷⁸⁹]\u00a0N) (?=m\b)|(?<=\u00a0N²) (?=m²)|(?<=m²) (?=s\b)")
+_PART_OF_NAME = re.compile(r"(?<=[_=/])|(?<=\.)(?!\d)")
 _SIZE = re.compile(r'viewBox="[-\d.]+ [-\d.]+ ([\d.]+) ([\d.]+)"')
 
 
 class Code(str):
-    """Text that is code of the target language already, and is inserted as it is."""
+    """Text that is code of the target language already, and is inserted unchanged."""
 
     __slots__ = ()
 
@@ -29,7 +36,7 @@ class Code(str):
 @cache
 def html_environment() -> jinja2.Environment:
     """Return the environment of the HTML templates: autoescape on, an unknown name is an error."""
-    return _environment(finalize=html_value)
+    return _environment(bound_html, finalize=html_value)
 
 
 @cache
@@ -40,6 +47,7 @@ def typst_environment() -> jinja2.Environment:
     that no text can become markup or code, not even where a template forgets a filter.
     """
     return _environment(
+        bound_typst,
         finalize=typst_value,
         block_start_string="<%",
         block_end_string="%>",
@@ -56,7 +64,7 @@ def html_value(value: object) -> object:
 
 
 def typst_value(value: object) -> str:
-    """Return a value as Typst code: a number, true or false, or a quoted string; the output of a macro stays as it is.
+    """Return a value as Typst code: a number, true or false, or a quoted string; the output of a macro stays unchanged.
 
     Raises:
         TypeError: If the value is anything else.
@@ -84,13 +92,33 @@ def origin_label(origin: Origin, kind: str) -> str:
     return f"{kind} {number}" if number[0].isdigit() else number[0].upper() + number[1:]
 
 
+def bind_units(text: str) -> str:
+    """Return a string in which no line break parts a number from its unit."""
+    return _INSIDE_UNIT.sub("\u00a0", _BEFORE_UNIT.sub("\u00a0", text))
+
+
+def bound_html(text: str) -> Code:
+    """Return a string as HTML in which numbers and units stay together."""
+    return Code(bind_units(html.escape(plain(text))))
+
+
+def bound_typst(text: str) -> Code:
+    """Return a string as Typst code in which numbers and units stay together."""
+    return Code(bind_units(quote_typst(text)))
+
+
+def name_parts(text: str) -> list[Code]:
+    """Return the parts of a string, such as a key of a config, between which a line may break; numbers stay whole."""
+    return [bound_html(part) for part in _PART_OF_NAME.split(text)]
+
+
 def aspect(svg: str) -> str:
     """Return width and height of a drawing as the style `aspect-ratio` has them."""
     size = _SIZE.search(svg)
     return f"{size[1]} / {size[2]}" if size else "auto"
 
 
-def _environment(**options: Any) -> jinja2.Environment:
+def _environment(bound: Callable[[str], Code], **options: Any) -> jinja2.Environment:
     environment = jinja2.Environment(
         loader=jinja2.FileSystemLoader(templates_dir(), encoding="utf-8"),
         autoescape=True,
@@ -103,6 +131,8 @@ def _environment(**options: Any) -> jinja2.Environment:
         "spans": spans,
         "origin_label": origin_label,
         "aspect": aspect,
+        "bind_units": bound,
+        "name_parts": name_parts,
         "name_text": name_text,
         "by_finding": by_finding,
         "by_place": by_place,

@@ -150,8 +150,8 @@ def _check_joints(path: Path, tree: UrdfTree) -> list[str]:
     held = "`runner doctor FILE --tip FRAME --output DIR` holds fixed what does not move the tip"
     if beside:
         return [
-            f"robot.urdf: {path} branches: {', '.join(beside)} move beside {', '.join(sorted(chain))}; allowed: a "
-            f"serial arm; {held}"
+            f"robot.urdf: {path} branches: {', '.join(beside)} move in addition to {', '.join(sorted(chain))}; "
+            f"allowed: a serial arm; {held}"
         ]
     tied = [
         f"robot.urdf: joint '{name}' in {path} {tree.ties[name]}, and its motion would be free; take that out; {held}"

@@ -146,7 +146,7 @@ def add_payload(links: Mapping[str, ET.Element], payload: Payload) -> None:
     """
     if payload.link not in links:
         raise ConfigError(
-            f"robot.payload: the tip frame '{payload.link}' is no link{nearest(payload.link, links)}; a payload "
+            f"robot.payload: the tip frame '{payload.link}' is not a link{nearest(payload.link, links)}; a payload "
             f"needs one: add a massless link there, fixed. Links: {', '.join(links)}"
         )
     link = links[payload.link]

@@ -197,8 +197,8 @@ def refused_parts(spec: Any) -> Iterator[str]:
 def refused_model(model: Any) -> Iterator[str]:
     """Yield a message about each unsupported property of a compiled model, with names and a remedy."""
     if not model.njnt:
-        yield "has no joint: it is no arm"
-    yield from _joints(model, ~np.isfinite(model.qpos0), "a ref that is no finite number:", "give a number")
+        yield "has no joint: it is not an arm"
+    yield from _joints(model, ~np.isfinite(model.qpos0), "a ref that is not finite:", "give a number")
 
 
 def _of_gravity(spec: Any) -> dict[str, str]:

@@ -33,7 +33,7 @@ def follow_includes(path: Path) -> list[Path]:
     root, folder = parse_xml(path, "robot.mjcf"), path.resolve().parent
     if root.tag != "mujoco":
         urdf = "; a URDF stands at robot.urdf" if root.tag == "robot" else ""
-        raise ConfigError(f"robot.mjcf: {path} is no MJCF: it begins with <{root.tag}>, not with <mujoco>{urdf}")
+        raise ConfigError(f"robot.mjcf: {path} is not an MJCF: it begins with <{root.tag}>, not with <mujoco>{urdf}")
     found, todo, problems, roots = [path], [(path, root)], [], []
     while todo:
         file, element = todo.pop()

@@ -72,8 +72,9 @@ def write_urdf(
         place = _frame(model.site_pos, model.site_quat, site)
         _write_joint(robot, f"{link}_fixed", "fixed", bearer, link, place)
     for joint in range(model.njnt):
-        if model.joint(joint).name not in ("", joint_name(model, joint)):
-            names.told.append(f"joint '{model.joint(joint).name}' is '{joint_name(model, joint)}', beside a link")
+        name, new = model.joint(joint).name, joint_name(model, joint)
+        if name not in ("", new):
+            names.told.append(f"joint '{name}' is '{new}', as a link has the name")
     for text, gravity in left_out.items():
         ET.SubElement(robot, "left_out", text=text, gravity=gravity)
     ET.indent(robot)
@@ -99,7 +100,7 @@ class _Names:
             new += ending
         self._taken.add(new)
         if new != name:
-            self.told.append(f"site '{name}' is the link '{new}', beside another")
+            self.told.append(f"site '{name}' is the link '{new}', as another link has the name")
         return new
 
 

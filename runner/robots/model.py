@@ -277,7 +277,7 @@ def _build(urdf: str) -> "pin.Model":
     if said:  # about a shape that Pinocchio does not support; models have no shapes
         model, said = _read(_without_shapes(urdf))
     if said:
-        raise ConfigError(f"robot.urdf: Pinocchio does not take it as it is: {' '.join(said)}")
+        raise ConfigError(f"robot.urdf: Pinocchio does not accept it: {' '.join(said)}")
     return model
 
 

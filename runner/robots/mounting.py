@@ -80,9 +80,11 @@ def mount_tool(urdf: str, flange: str, tool: ToolConfig) -> str:
     robot = ET.fromstring(urdf)  # noqa: S314 - our own text, checked when it was read
     links = [link.get("name", "") for link in robot.iter("link")]
     if flange not in links:
-        raise ConfigError(f"robot.tool: the flange '{flange}' is no link to fix a tool on; links: {', '.join(links)}")
+        raise ConfigError(
+            f"robot.tool: the flange '{flange}' is not a link to fix a tool on; links: {', '.join(links)}"
+        )
     if {TOOL, TOOL_TIP} & set(links):
-        raise ConfigError(f"robot.tool: the URDF has a link '{TOOL}' or '{TOOL_TIP}' of its own; allowed: null")
+        raise ConfigError(f"robot.tool: the URDF already has a link '{TOOL}' or '{TOOL_TIP}'; allowed: null")
     body = ET.SubElement(robot, "link", name=TOOL)
     inertial = ET.SubElement(body, "inertial")
     ET.SubElement(inertial, "origin", xyz=vector_text(tool.centre_of_mass))

@@ -123,7 +123,7 @@ def make_tree(robot: ET.Element, path: Path) -> UrdfTree:
         ) from None
     links = {link.get("name", ""): link for link in robot.findall("link")}
     if robot.tag != "robot" or not links:
-        raise ConfigError(f"robot.urdf: {path} is no URDF: it needs a <robot> with links")
+        raise ConfigError(f"robot.urdf: {path} is not a URDF: it needs a <robot> with links")
     robot.set("name", robot.get("name") or path.stem)
     renamed = _rename_joints(robot, links)
     joints = {joint.get("name", ""): joint for joint in robot.findall("joint")}
@@ -214,7 +214,7 @@ def _rename_joints(robot: ET.Element, links: Collection[str]) -> tuple[str, ...]
             for element, key in ((joint, "name"), *((mimic, "joint") for mimic in robot.iterfind("joint/mimic"))):
                 if element.get(key) == name:
                     element.set(key, new)
-            told.append(f"joint '{name}' is '{new}', beside a link")
+            told.append(f"joint '{name}' is '{new}', as a link has the name")
     return tuple(told)
 
 
@@ -251,7 +251,7 @@ def _repeated(robot: ET.Element) -> list[str]:
 
 def _loose_ends(links: dict[str, ET.Element], joints: dict[str, ET.Element]) -> list[str]:
     return [
-        f"joint '{name}' has a {role} '{end_of(joint, role)}', which is no link{nearest(end_of(joint, role), links)}"
+        f"joint '{name}' has a {role} '{end_of(joint, role)}', which is not a link{nearest(end_of(joint, role), links)}"
         for name, joint in joints.items()
         for role in ("parent", "child")
         if end_of(joint, role) not in links

@@ -1,11 +1,10 @@
 """Statistics of repeated runs: confidence intervals, paired comparisons, and effects of sweep axes."""
 
-from runner.statistics.effects import PERMUTATIONS, Effect, EffectAnalysis, axis_effects
+from runner.statistics.effects import Effect, EffectAnalysis, axis_effects
 from runner.statistics.interval import SMALLEST_SAMPLE, Interval, median_interval, median_intervals
 from runner.statistics.paired import Comparison, compare_paired, fewest_pairs, holm, holm_levels, subtract
 
 __all__ = [
-    "PERMUTATIONS",
     "SMALLEST_SAMPLE",
     "Comparison",
     "Effect",

@@ -14,7 +14,7 @@ SMALLEST_SAMPLE = 6
 """Fewest values that allow a statement at 95 %: of five, even the whole range misses the median in 2 / 2^5 = 6 %."""
 
 _VALUES_AT_ONCE = 2_000_000
-_DRAWN_WHOLE = 2000  # values; of a larger sample the middle of a resample is drawn alone, which is quicker
+_DRAWN_WHOLE = 2000  # values; of a larger sample only the middle of a resample is drawn, which is quicker
 
 
 @dataclass(frozen=True)
@@ -38,7 +38,7 @@ def median_interval(values: FloatArray, seed: int = 0) -> Interval:
     """Return the median of a sample with its 95 % confidence interval.
 
     The percentile bootstrap, with percentiles expanded for the smallness of the sample (Hesterberg, "What Teachers
-    Should Know About the Bootstrap", The American Statistician 69, 2015, section 3.3): in place of alpha / 2 stands
+    Should Know About the Bootstrap", The American Statistician 69, 2015, section 3.3): instead of alpha / 2 stands
     Phi(sqrt(n / (n - 1)) t_(alpha / 2, n - 1)). Without that, seven values cover their median in 87 % of cases only.
 
     Args:

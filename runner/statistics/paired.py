@@ -15,7 +15,7 @@ EXACT_UP_TO = 200
 """Differences up to which the distribution is summed up; beyond, the normal law stands in for it."""
 
 _POWER = 0.8  # probability of showing a difference, for which pairs are counted
-_EFFICIENCY = 3.0 / math.pi  # of signed ranks, for normal differences, beside the mean
+_EFFICIENCY = 3.0 / math.pi  # of signed ranks, for normal differences, relative to the mean
 
 
 class SignedRanks:
@@ -106,6 +106,7 @@ class Comparison:
         differences: b - a; zero where both are beyond every number.
         error: Typical error of the plants in one difference; None where it is not known.
         rounding: Largest change of a value through rounding, as a fraction; 0 where it is not known.
+        exact: True if nothing is drawn, so that one pair gives the difference without doubt.
     """
 
     a: FloatArray = field(repr=False)
@@ -113,6 +114,7 @@ class Comparison:
     differences: FloatArray = field(repr=False)
     error: float | None = None
     rounding: float = 0.0
+    exact: bool = False
 
     @property
     def n(self) -> int:

@@ -13,7 +13,7 @@ from runner.statistics.interval import CONFIDENCE
 IntArray = NDArray[np.integer]
 
 _TAIL = (1.0 - CONFIDENCE) / 2.0  # of either side
-_MOST = 10**15  # repetitions; of more nobody would speak
+_MOST = 10**15  # repetitions; more are not plausible
 
 
 @dataclass(frozen=True)
@@ -23,7 +23,7 @@ class Share:
     Attributes:
         kept: Their number.
         of: Number of repetitions, one or more.
-        low: Lower end of the 95 % interval of the probability behind it.
+        low: Lower end of the 95 % interval of the probability.
         high: Upper end.
     """
 
@@ -44,11 +44,11 @@ class Share:
 
 
 def count_share(kept: int, of: int) -> Share:
-    """Return a share with the exact 95 % interval of the probability behind it.
+    """Return a share with the exact 95 % interval of the probability.
 
     Clopper and Pearson, "The Use of Confidence or Fiducial Limits Illustrated in the Case of the Binomial",
-    Biometrika 26, 1934: the lower end is the probability with which so many or more happen in 2.5 % of all cases, the
-    upper end that with which so many or fewer do. Both are quantiles of beta distributions. The interval covers the
+    Biometrika 26, 1934: the lower end is the probability with which this many or more happen in 2.5 % of all cases, the
+    upper end that with which this many or fewer do. Both are quantiles of beta distributions. The interval covers the
     probability in 95 % of cases or more, whatever that is; in more, as a count is a whole number.
 
     Args:

@@ -20,12 +20,12 @@ Histories = Mapping[str, History]
 
 
 def today() -> str:
-    """Return the date as it is stored, such as "2026-11-24", in UTC."""
+    """Return the date as stored, such as "2026-11-24", in UTC."""
     return time.strftime("%Y-%m-%d", time.gmtime())
 
 
 def ends_of(bound: Bound | None) -> list[float | None]:
-    """Return the ends of a bound as a history has them; None is no bound."""
+    """Return the ends of a bound as a history has them; None is not a bound."""
     return [None, None] if bound is None else [bound.min, bound.max]
 
 
@@ -145,7 +145,7 @@ def within(bound: Bound, values: FloatArray) -> NDArray[np.bool_]:
 
 
 def read_spec(record: Mapping[str, Any]) -> Spec:
-    """Return what `Spec.record` gave."""
+    """Return the specification that `Spec.record` stored."""
     bounds = []
     for metric, stored in record["bounds"].items():
         bound = Bound(min=stored["min"], max=stored["max"], reason=stored["reason"])

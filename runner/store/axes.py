@@ -108,7 +108,7 @@ def override_value(value: object, string: Callable[[str], str] = _string) -> str
 
     Args:
         value: A number, string, bool, None, or a list or mapping of these.
-        string: Returns a string as it is written.
+        string: Returns a string as written.
     """
     if value is None:
         return "null"

@@ -79,7 +79,7 @@ def open_calibration(folder: Path) -> Calibration:
     missing = [key for key in _NEEDED if key not in record]
     if missing:
         raise DamagedError(
-            f"cannot read {folder / _RECORD}: it is no calibration's result: {', '.join(missing)} missing; {MEND}"
+            f"cannot read {folder / _RECORD}: it is not a calibration's result: {', '.join(missing)} missing; {MEND}"
         )
     return Calibration(folder, config, record)
 

@@ -261,7 +261,7 @@ def open_run(folder: Path) -> Run:
         raise StoreError(f"no folder {folder}")
     if not (folder / "metrics.json").exists():
         found = {"run": "a run that did not finish", "sweep": "a sweep, not a single run"}
-        what = found.get("sweep" if kind_of(folder) == "tuning" else kind_of(folder) or "", "no stored run")
+        what = found.get("sweep" if kind_of(folder) == "tuning" else kind_of(folder) or "", "not a stored run")
         raise StoreError(
             f"{folder} is {what}: it has no metrics.json; `runner OVERRIDES` simulates a run and prints its folder"
         )
@@ -271,7 +271,7 @@ def open_run(folder: Path) -> Run:
         ("config.yaml", "config", find_config_faults(config)),
     ):
         if faults:
-            raise DamagedError(f"cannot read {folder / name}: it is no run's {what}: {faults}; {MEND}")
+            raise DamagedError(f"cannot read {folder / name}: it is not a run's {what}: {faults}; {MEND}")
     return Run(folder, config, record)
 
 
@@ -297,5 +297,5 @@ def judge_run(run: Run, bounds: "Mapping[str, Bound]", date: str = "") -> Run:
     found = run.judged_by(bounds, settings(bounds, date or today()))
     write_job(run.folder, "metrics.json", {key: value for key, value in found.record.items() if key != "schema"}, {})
     what = "without a spec" if before is None else "with another spec"
-    print(f"runner: stored before {what}; the shares are worked out from its stored values", file=sys.stderr)
+    print(f"runner: stored before {what}; the shares are computed from its stored values", file=sys.stderr)
     return found

@@ -236,7 +236,7 @@ def open_row(path: Path, row: int) -> Run:
     except (KeyError, ValueError, TypeError) as error:
         fault = str(error)
     if fault:
-        raise DamagedError(f"cannot read {path}: row {row} is no run: {fault}; {_REMEDY}")
+        raise DamagedError(f"cannot read {path}: row {row} is not a run: {fault}; {_REMEDY}")
     folder = path.parent.parent / "runs" / values["run"][row].as_py()
     return Run(folder, config, record, values["urdf"][row].as_py(), beside=partial(_values_in, path, row))
 

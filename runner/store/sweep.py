@@ -27,6 +27,8 @@ if TYPE_CHECKING:
 
 _FILE = "sweep.json"
 _RUNS = "runs.bin"  # hashes of the runs of a grid, 12 bytes for each cell
+QUESTION = "question.json"
+"""File of a sweep with the axis that a user asked about."""
 _AT_ONCE = 10_000  # rows
 _REMEDY = "the sweep's command writes it again"
 _NO_SPEC: "Mapping[str, Bound]" = {}
@@ -43,6 +45,7 @@ class Sweep:
         command: Command that starts or resumes the sweep.
         spec: Bounds on metrics, against which the runs are evaluated instead of their own; empty for none.
         history: Bounds of all its commands, each with the date of the first command that had it.
+        question: Axis that a user asked about last; empty for the one that its axes suggest.
     """
 
     folder: Path
@@ -51,6 +54,7 @@ class Sweep:
     command: str
     spec: "Mapping[str, Bound]" = field(default_factory=dict)
     history: "Histories" = field(default_factory=dict)
+    question: str = ""
 
     @property
     def continuation(self) -> str:
@@ -220,7 +224,7 @@ def open_sweep(folder: Path) -> Sweep:
     path = folder / _FILE
     if not path.exists():
         raise StoreError(
-            f"{folder} is no sweep: it has no {_FILE}; `runner -m OVERRIDES` makes one, and prints its folder"
+            f"{folder} is not a sweep: it has no {_FILE}; `runner -m OVERRIDES` makes one, and prints its folder"
         )
     content = read_json(path, _REMEDY)
     command = content.get("command", "")
@@ -231,7 +235,12 @@ def open_sweep(folder: Path) -> Sweep:
     place = folder.resolve()
     if place.parent.name == "sweeps" and _name(rows) != place.name:
         raise DamagedError(f"cannot read {path}: it is of another sweep than its folder is named after; {_REMEDY}")
-    return Sweep(folder, overrides, hashes, command, *_read_spec(path, content))
+    return Sweep(folder, overrides, hashes, command, *_read_spec(path, content), _read_question(folder))
+
+
+def _read_question(folder: Path) -> str:
+    path = folder / QUESTION
+    return str(read_json(path, "`runner report SWEEP --by AXIS` writes it again")["axis"]) if path.exists() else ""
 
 
 def _read_spec(path: Path, content: Mapping[str, Any]) -> "tuple[dict[str, Bound], Histories]":
@@ -252,7 +261,7 @@ def _read_jobs(path: Path, content: Mapping[str, Any]) -> tuple[Sequence[Sequenc
     jobs = content.get("jobs")
     if not (isinstance(jobs, list) and all(map(_is_job, jobs))):
         raise DamagedError(
-            f"cannot read {path}: it is no sweep's: it needs jobs with overrides and run each; {_REMEDY}"
+            f"cannot read {path}: it is not a sweep's: it needs jobs with overrides and run each; {_REMEDY}"
         )
     overrides, hashes = [tuple(job["overrides"]) for job in jobs], [job["run"] for job in jobs]
     return overrides, hashes, _rows(zip(overrides, hashes, strict=True))

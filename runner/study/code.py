@@ -138,7 +138,7 @@ def read_user_plugins(lines: Sequence[str]) -> tuple[UserPlugin, ...]:
     for part in parts:
         config = part.folder / part.group / f"{part.name}.yaml"
         if not (part.function or config.is_file()):
-            raise RunnerError(f"--plugin {part.group}={part.module}: no config beside it, {config}")
+            raise RunnerError(f"--plugin {part.group}={part.module}: no config next to it, {config}")
     return tuple(parts)
 
 

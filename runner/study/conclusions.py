@@ -30,8 +30,8 @@ def conclusions(
 
     Args:
         document: The report.
-        runs: The stored runs behind it, by name.
-        calibrations: The stored calibrations behind it, by name.
+        runs: The stored runs that it uses, by name.
+        calibrations: The stored calibrations that it uses, by name.
         expected: The caveats that it expects of them.
     """
     return {

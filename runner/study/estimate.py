@@ -46,7 +46,7 @@ class Amount:
         return Amount(self.trials + other.trials, self.longer + other.longer, self.runs + other.runs, time)
 
     def in_words(self, workers: int) -> str:
-        """Return number and time of all, made by so many processes; 0 stands for the command itself."""
+        """Return number and time of all, made by this many processes; 0 stands for the command itself."""
         processes = max(workers, 1)
         together = min(processes, os.cpu_count() or 1)
         sweeps = 1 + ROUNDS * ((self.trials > 0) + (self.longer > 0))

@@ -67,7 +67,7 @@ class Measured:
         return format_range(self.value, other.value, self.unit, word="and")
 
     def __mul__(self, factor: float) -> Measured:
-        """Return it so many times."""
+        """Return it times a factor."""
         return self._worked_out(f"{number(factor)} times {self.name}", lambda value: factor * value, self.unit)
 
     __rmul__ = __mul__

@@ -212,7 +212,7 @@ def write_gains(folder: Path, gains: Gains) -> None:
 def put_in(overrides: Overrides, gains: Gains) -> Overrides:
     """Return a run's overrides with the gains of a tuning instead of the override that names it.
 
-    One whose gains are not known yet stays as it is.
+    One whose gains are not known yet stays unchanged.
 
     Raises:
         RunnerError: if a tuning has no such number.

@@ -20,6 +20,7 @@ from runner.store.axes import axes_of
 from runner.store.finished import finer_names, write_finer
 from runner.store.run import Run
 from runner.store.sweep import Sweep
+from runner.sweeps.drawn import draws_nothing
 
 if TYPE_CHECKING:
     from runner.config.run import RunConfig
@@ -46,8 +47,8 @@ def work_out_sweep(sweep: Sweep) -> None:
 def work_out(outputs: Path, runs: Iterable[Run]) -> None:
     """Store the metrics on a finer step for some runs, unless they are already stored.
 
-    Runs from another version of the runner or another robot file are left out. Nothing is stored if the runs have
-    fewer repetitions and seeds than a comparison needs.
+    Runs from another version of the runner or another robot file are left out. Nothing is stored if the runs draw
+    something and have fewer repetitions and seeds than a comparison needs.
 
     Raises:
         StoreError: if a run is damaged, or the result cannot be written.
@@ -56,7 +57,8 @@ def work_out(outputs: Path, runs: Iterable[Run]) -> None:
     draws = sum({int(run.config["seed"]): int(run.record["repetitions"]) for run in given}.values())
     known = finer_names(outputs)
     left = [run for run in given if run.hash not in known and run.status == "ok"]
-    if draws < SMALLEST_SAMPLE or len(given) > MOST_RUNS or not left:
+    few = draws < SMALLEST_SAMPLE and not all(draws_nothing(run.config) for run in given)
+    if few or len(given) > MOST_RUNS or not left:
         return
     progress.begin("trying a finer step", len(left), "runs")
     for run in left:
@@ -108,4 +110,5 @@ def _finer(given: Mapping[str, Any], config: "RunConfig") -> dict[str, Any]:
         resolved = on_runge_kutta(given)
     else:
         resolved = {**given, "plant": {**given["plant"], "step": config.timing.step / 2}}
-    return {**resolved, "repetitions": min(int(given["repetitions"]), DRAWS), "plant_error": False}
+    draws = 1 if draws_nothing(given) else DRAWS
+    return {**resolved, "repetitions": min(int(given["repetitions"]), draws), "plant_error": False}

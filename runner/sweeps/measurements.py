@@ -21,6 +21,7 @@ from runner.store.run import Run
 from runner.store.seal import DamagedError
 from runner.store.sweep import InShard, Sweep
 from runner.sweeps.differing import Difference, Resolved
+from runner.sweeps.drawn import draws_nothing
 from runner.sweeps.gathering import Gathered
 from runner.sweeps.status import find_status
 
@@ -53,6 +54,7 @@ class Measurements:
         missing: Number of cells that are not stored.
         damage: Damaged files, a message for each.
         machines: Distinct machines that made the runs.
+        question: Axis that a user asked about; empty for none.
     """
 
     axes: Sequence[Axis]
@@ -76,6 +78,7 @@ class Measurements:
     missing: int = 0
     damage: Sequence[str] = ()
     machines: Sequence[Machine] = ()
+    question: str = ""
 
     @property
     def failed(self) -> int:
@@ -121,10 +124,12 @@ class Measurements:
 
     @cached_property
     def copies(self) -> NDArray[np.bool_]:
-        """True for cells whose repetitions are equal in every metric because nothing is drawn, shape (cells,)."""
+        """True for cells in which nothing is drawn: their repetitions are equal in every metric, shape (cells,)."""
         alike = np.full(len(self.hashes), self.repetitions > 1)
         for values in self.values.values():
             alike &= ((values == values[:, :1]) | np.isnan(values)).all(axis=1)
+        for config, cells in self.configs if self.repetitions == 1 else ():
+            alike[cells] = draws_nothing(config)
         return alike
 
     @cached_property
@@ -209,7 +214,7 @@ def measure_sweep(sweep: Sweep) -> Measurements:
         StoreError: If a run is missing or damaged.
     """
     measured = _with_finer(_measured(sweep.overrides, _gather(sweep)), sweep.outputs)
-    return replace(measured, folder=sweep.folder, command=sweep.command)
+    return replace(measured, folder=sweep.folder, command=sweep.command, question=sweep.question)
 
 
 def _gather(sweep: Sweep) -> Gathered:

@@ -33,7 +33,7 @@ class Preview:
 
 
 def preview(plan: Plan, engine: Engine) -> Preview:
-    """Check all cells of a plan and return what its sweep would do; nothing is simulated or stored.
+    """Check all cells of a plan and return the actions of its sweep; nothing is simulated or stored.
 
     Raises:
         ConfigError: if a cell cannot be run.

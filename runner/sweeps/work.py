@@ -165,7 +165,7 @@ def find_calibrated(outputs: Path, name: str) -> store.Outcome | None:
 
 
 def _make(name: str, composed: Composed, rules: Rules) -> RunResult | store.Run | store.Outcome:
-    """Make one job; return a run as it is stored, or the outcome of a stored calibration."""
+    """Make one job; return a run as stored, or the outcome of a stored calibration."""
     job = _checked(name, composed)
     result: Any
     result, reason, details = _try(job.simulate, rules)
@@ -231,7 +231,7 @@ def give_up(chunk: Chunk, reason: str) -> Report:
 
 
 def cut_short(job: RunJob | CalibrationJob, rules: Rules, reason: str, details: str = "") -> store.Run | store.Outcome:
-    """Log a job that ended for another reason than its physics; return a run as it is stored, or an outcome."""
+    """Log a job that ended for another reason than its physics; return a run as stored, or an outcome."""
     if isinstance(job, CalibrationJob):
         write_log(job.name, f"{reason}\n{details}", rules)
         return store.Outcome(job.name, f"cut short: {reason}", cut_short=True)

@@ -15,7 +15,7 @@ from runner.store.writing import make_record
 
 TraceKeeping = Literal["all", "sample", "failed", "never"]
 
-_SAMPLE = 100  # one run in so many, up to _LARGEST_SAMPLE runs
+_SAMPLE = 100  # one run in this many, up to _LARGEST_SAMPLE runs
 _LARGEST_SAMPLE = 200  # runs: a run with its trace is four files
 
 
@@ -128,7 +128,7 @@ class ResultWriter:
 
 
 def without_trace(name: str, result: RunResult, rules: Rules) -> RunResult | store.Run:
-    """Return a result as it is stored: whole, or without its trace; then also log a failure."""
+    """Return a result as stored: whole, or without its trace; then also log a failure."""
     if rules.keeps_trace(name, result.failure is not None):
         return result
     folder, record = rules.outputs / "runs" / name, make_record(result)

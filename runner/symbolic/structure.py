@@ -96,7 +96,7 @@ def plain_structure(name: str, value: Any) -> Any:
     if isinstance(value, Mapping):
         return {str(key): plain_structure(str(key), entry) for key, entry in value.items()}
     if callable(value) or not hasattr(value, "__dict__"):
-        raise CannotCompileError(f"a law that keeps {name}, {type(value).__name__}, of which nobody knows what it does")
+        raise CannotCompileError(f"a law that keeps {name}, {type(value).__name__}, whose use is not known")
     kind = type(value)
     kept = {key: entry for key, entry in vars(value).items() if key != "parameters"}
     return f"{kind.__module__}.{kind.__qualname__}", plain_structure(name, kept)

@@ -148,7 +148,7 @@ def _read_parquet(path: Path) -> dict[str, list[float]]:
             raise _refused(path, excess)
         table = file.read()
     except pyarrow.ArrowException as error:
-        raise _refused(path, f"is no Parquet file: {str(error).splitlines()[0]}") from error
+        raise _refused(path, f"is not a Parquet file: {str(error).splitlines()[0]}") from error
     columns: dict[str, list[float]] = {}
     problems: list[str] = []
     for name in table.column_names:

@@ -39,7 +39,7 @@ class JointWaypointsConfig(StrictModel):
     @classmethod
     def _check_configurations(cls, value: list[Configuration]) -> list[Configuration]:
         if not value:
-            raise ValueError("must have one configuration or more beside the start")
+            raise ValueError("must have one configuration or more besides the start")
         return value
 
     @field_validator("time_shares")

@@ -40,7 +40,7 @@ class WaypointsConfig(StrictModel):
     @classmethod
     def _check_points(cls, value: list[list[float]]) -> list[list[float]]:
         if not value:
-            raise ValueError("must have one way-point or more beside the start")
+            raise ValueError("must have one way-point or more besides the start")
         return value
 
     @field_validator("time_shares")

@@ -16,6 +16,7 @@ BRIEF = {
     "friction_coverage": ("tools", "friction_coverage"),
     "fuzz": ("tools.fuzz", "--cases", "5", "--lines", "2"),
     "kills": ("tools", "kills"),
+    "made_up_logs": ("tools", "made_up_logs"),
     "option_walk": ("tools.option_walk", "--engines", "rk4", "--sample", "10"),
     "plain_hydra": ("tools", "plain_hydra"),
     "processors": ("tools", "processors"),

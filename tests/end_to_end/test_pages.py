@@ -14,7 +14,7 @@ ALL = [*pages(), *(page for page in sorted(ROOT.glob("*.md")) if page != README)
 
 @pytest.fixture(scope="session")
 def first_lines(tmp_path_factory):
-    """A folder in which somebody typed the first lines of the README, and how they ended."""
+    """A folder in which a reader typed the first lines of the README, and how they ended."""
     folder = tmp_path_factory.mktemp("reader")
     return folder, follow(steps(README, until="First run"), folder)
 

@@ -79,13 +79,13 @@ class Gate:
         self.source = _STOP.format(here=str(here), gate=str(gate))
 
     def metric(self, rows: int) -> str:
-        """Write a metric that stops at traces of so many rows; return the plug-in."""
+        """Write a metric that stops at traces of this many rows; return the plug-in."""
         path = self._folder / f"gate_{os.getpid()}_{next(_NUMBERS)}.py"  # Python knows a module by only its name
         path.write_text(self.source + _METRIC.format(rows=rows))
         return f"metric={path}"
 
     def command(self, function: str, calls: int, *arguments: object) -> list[str]:
-        """Return the command line of a `runner` that stops once it has made so many calls of a function.
+        """Return the command line of a `runner` that stops once it has made this many calls of a function.
 
         Args:
             function: The function, such as "os:fsync".

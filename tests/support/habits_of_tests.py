@@ -3,7 +3,7 @@
 import ast
 import itertools
 import re
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass
 
 _CLOCKS = {
@@ -31,7 +31,10 @@ class Offence:
 def offences(source: str) -> list[Offence]:
     """Return all offences of a test file by line; in strings, which may be plug-ins, only sleeps."""
     tree = ast.parse(source)
-    found = [*_sleeps(tree), *_waits(tree), *_loops(tree), *_ports(tree), *_asserted_clocks(tree)]
+    nodes = list(ast.walk(tree))
+    found = [*_sleeps(nodes), *_waits(nodes), *_loops(nodes), *_ports(nodes)]
+    if any(isinstance(node, ast.Name | ast.Attribute) and _name(node) in _CLOCKS for node in nodes):
+        found += _asserted_clocks(tree)
     return sorted(set(found), key=lambda offence: (offence.line, offence.rule))
 
 
@@ -40,14 +43,14 @@ def _name(node: ast.expr) -> str:
     return node.attr if isinstance(node, ast.Attribute) else node.id if isinstance(node, ast.Name) else ""
 
 
-def _calls(tree: ast.AST) -> Iterator[tuple[ast.Call, str]]:
-    for node in ast.walk(tree):
+def _calls(nodes: Iterable[ast.AST]) -> Iterator[tuple[ast.Call, str]]:
+    for node in nodes:
         if isinstance(node, ast.Call):
             yield node, _name(node.func)
 
 
-def _sleeps(tree: ast.AST) -> Iterator[Offence]:
-    for node in ast.walk(tree):
+def _sleeps(nodes: Sequence[ast.AST]) -> Iterator[Offence]:
+    for node in nodes:
         imported = isinstance(node, ast.ImportFrom) and any(alias.name == "sleep" for alias in node.names)
         called = isinstance(node, ast.Call) and _name(node.func) == "sleep"
         text = node.value if isinstance(node, ast.Constant) and isinstance(node.value, str) else ""
@@ -55,9 +58,9 @@ def _sleeps(tree: ast.AST) -> Iterator[Offence]:
             yield Offence(node.lineno, "sleeps; wait for what is to happen")
 
 
-def _waits(tree: ast.AST) -> Iterator[Offence]:
+def _waits(nodes: Sequence[ast.AST]) -> Iterator[Offence]:
     """Find waits whose limit is missing, or is a number: a limit that only ends hangs is PATIENCE."""
-    for call, name in _calls(tree):
+    for call, name in _calls(nodes):
         limits = [keyword.value for keyword in call.keywords if keyword.arg == "timeout"]
         if name in _WAITS and not isinstance(call.func, ast.Name):
             limits = limits or call.args[:1] if name != "communicate" else limits
@@ -67,18 +70,18 @@ def _waits(tree: ast.AST) -> Iterator[Offence]:
             yield Offence(call.lineno, "a limit in seconds; give it PATIENCE")
 
 
-def _loops(tree: ast.AST) -> Iterator[Offence]:
+def _loops(nodes: Sequence[ast.AST]) -> Iterator[Offence]:
     """Find `while` loops that ask again and again; those over what they hold themselves come to an end."""
-    for node in ast.walk(tree):
+    for node in nodes:
         if isinstance(node, ast.While):
-            asked = {name for _, name in _calls(node.test)} - _FREE
+            asked = {name for _, name in _calls(ast.walk(node.test))} - _FREE
             if asked or isinstance(node.test, ast.Constant):
                 yield Offence(node.lineno, "a loop without a limit; use wait_until or `for _ in range`")
 
 
-def _ports(tree: ast.AST) -> Iterator[Offence]:
+def _ports(nodes: Sequence[ast.AST]) -> Iterator[Offence]:
     """Find ports that a test chooses: bound and given to another, or written down."""
-    for node in ast.walk(tree):
+    for node in nodes:
         if isinstance(node, ast.Call) and _name(node.func) == "bind":
             yield Offence(node.lineno, "a chosen port; let the server choose it")
         words = node.elts if isinstance(node, ast.List | ast.Tuple) else node.args if isinstance(node, ast.Call) else []

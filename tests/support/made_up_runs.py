@@ -15,7 +15,7 @@ FAILURE = {"reason": "diverged", "time": 0.5, "joint": None, "repetition": 0}
 
 
 def made_up_metric(*values: float, unit: str = "m") -> dict[str, Any]:
-    """Return a metric as it is stored, from its values in the repetitions."""
+    """Return a metric as stored, from its values in the repetitions."""
     return {"unit": unit, "median": float(np.median(values)), "min": min(values), "max": max(values), "values": values}
 
 

@@ -9,7 +9,7 @@ CONTROLLERS, LOADS, SEEDS = ["computed_torque", "operational_space"], [0.5, 2.0]
 
 
 def by_hand() -> Measurements:
-    """Return twelve cells, the seed changing fastest, in metres, newton metres and a unit of somebody's own."""
+    """Return twelve cells, the seed changing fastest, in metres, newton metres and a user's unit."""
     controller, load, seed = (places.ravel() for places in np.meshgrid([0, 1], [0, 1], [0, 1, 2], indexing="ij"))
     draws = np.random.default_rng(3).normal(size=(12, 4))
     error = 0.005 + 0.001 * controller[:, None] + 0.02 * load[:, None] + 1e-4 * draws

@@ -1,16 +1,15 @@
-"""What chapters, reports and drawings say, line by line, as it is kept in tests/recorded.
+"""Chapters, reports and drawings as readable text, as recorded in tests/recorded.
 
-A line is a field with its value: of an array its shape and some of its values, of a drawing its paths. Nothing is kept
-that another processor changes: a number below 1e-8 is 0, and digits that rounding makes are #; see `lines`.
+A line is a field with its value, a row of a table, or one sentence of a longer string. Of an array it has the shape and
+some of the values, of a drawing the paths. Fields with their default values, and empty ones, are left out. No line
+depends on the processor: a number below 1e-8 is 0, and digits that rounding makes are #; see `lines` and `settle`.
 """
 
-import lzma
 import re
 import xml.etree.ElementTree as ET
 from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import fields, is_dataclass
-from difflib import ndiff
-from itertools import zip_longest
+from dataclasses import MISSING, Field, fields, is_dataclass
+from difflib import SequenceMatcher, unified_diff
 from pathlib import Path
 from typing import Any
 
@@ -22,30 +21,45 @@ _NUMBER = re.compile(r"(?<![\w.])-?\d+(?:\.\d+)?(?:e[+-]?\d+)?")
 _DIGITS = re.compile(r"(?<![\w#.-])(?:-?\d+(?:\.\d+)?(?:e[+-]?\d+|·10[⁻⁰¹²³⁴⁵⁶⁷⁸⁹]+)?|-?inf|nan|None)(?!\w|\.\d)")
 _POWERS = str.maketrans("⁻⁰¹²³⁴⁵⁶⁷⁸⁹", "-0123456789")
 _SAME, _ZERO = 0.011, 1e-8  # so that a count is the same, and what rounding leaves
+_LONG = 120  # characters of a line; a longer string has a line for each sentence
+_SENTENCE = re.compile(r"(?<=[.;?!]) +(?=\S)")
+_MOST_SHOWN = 80  # lines of a difference
 _HREF = "{http://www.w3.org/1999/xlink}href"
-_HEAD = "=== "
 _HASH = re.compile(r"\b(?:[0-9a-f]{24}|(?=\d*[a-f])[0-9a-f]{8})\b")
 _OF_TODAY = ("date", "commit")
 _PRINTED = re.compile(r"(less than )?(-?\d+(?:\.\d+)?)·10([⁻⁰¹²³⁴⁵⁶⁷⁸⁹]+)")
 
 
-def read(file: Path) -> dict[str, list[str]]:
-    """Return the lines of a file by the names of what they describe."""
-    parts = (part.split("\n") for part in lzma.decompress(file.read_bytes()).decode().split(_HEAD)[1:])
-    return {name: rest[:-1] for name, *rest in parts}
+def read(file: Path) -> list[str]:
+    """Return the recorded lines of a file; none if it does not exist."""
+    return file.read_text(encoding="utf-8").splitlines() if file.is_file() else []
 
 
-def write(file: Path, kept: Mapping[str, Sequence[str]]) -> None:
-    """Keep lines by names in a file."""
-    text = "".join("".join(f"{line}\n" for line in (_HEAD + name, *kept[name])) for name in sorted(kept))
-    file.write_bytes(lzma.compress(text.encode(), preset=9 | lzma.PRESET_EXTREME))
+def write(file: Path, content: Sequence[str]) -> None:
+    """Record lines in a file."""
+    file.parent.mkdir(parents=True, exist_ok=True)
+    file.write_text("".join(f"{line}\n" for line in content), encoding="utf-8")
 
 
-def changes(was: Sequence[str], now: Sequence[str]) -> list[str]:
-    """Return how lines differ from what they were, as lines that begin with - or +."""
-    if all(_agree(*each) for each in zip_longest(was, now, fillvalue="")):
-        return []
-    return [line for line in ndiff(was, now) if line[0] in "-+"]
+def settle(was: Sequence[str], now: Sequence[str]) -> list[str]:
+    """Return new lines, with the recorded line wherever the two differ by no more than rounding."""
+    if was == now:
+        return list(now)
+    settled = list(now)
+    ours, theirs = ([_NUMBER.sub("", _plain(line)) for line in each] for each in (was, now))
+    for first, place, count in SequenceMatcher(None, ours, theirs).get_matching_blocks():
+        for k in range(count):
+            if _agree(was[first + k], now[place + k]):
+                settled[place + k] = was[first + k]
+    return settled
+
+
+def changes(name: str, was: Sequence[str], now: Sequence[str]) -> str:
+    """Return the differences of lines from the recorded ones, with line numbers; an empty string if they agree."""
+    told = [*unified_diff(was, now, f"{name} as recorded", f"{name} now", n=1, lineterm="")]
+    rest = len(told) - _MOST_SHOWN
+    shown = [*told[:_MOST_SHOWN], f"... and {rest} more lines"] if rest > 0 else told
+    return "\n".join([f"{name} differs; if meant: make record", *shown] if told else [])
 
 
 def lines(what: Any, of_rounding: Sequence[str] = ()) -> list[str]:
@@ -57,7 +71,7 @@ def lines(what: Any, of_rounding: Sequence[str] = ()) -> list[str]:
             of a run that diverged. Their numbers are #, and those of all lines below; a caption or a title stands for
             everything that it describes.
     """
-    found = [*_lines("is", what, 0)]
+    found = [*_lines("", what, 0)]
     for i, line in enumerate(found):
         if any(re.search(pattern, line) for pattern in of_rounding):
             for k in _described(found, i):
@@ -79,42 +93,76 @@ def _depth(line: str) -> int:
 
 
 def _lines(name: str, value: Any, depth: int) -> Iterator[str]:
-    head, below = f"{'  ' * depth}{name}:", depth + 1
-    match value:
-        case str() if value.lstrip().startswith("<"):
-            yield from (f"{head} {path}" for path in _paths(value))
-        case float() | np.floating():
-            yield f"{head} {_digits(value)}"
-        case np.ndarray():
-            yield f"{head} {value.shape} {_some(value.ravel().astype(float))}"
-        case Mapping():
-            yield head
-            for key, each in value.items():
-                yield from _lines(str(key), each, below)
-        case Sequence() if not isinstance(value, str):
-            yield head
-            for each in value:
-                yield from _lines("-", each, below)
-        case Provenance():  # versions, the machine and its clock
-            return
-        case _ if is_dataclass(value):
-            yield f"{head} {type(value).__name__}"
-            for field in (each for each in fields(value) if each.name not in _OF_TODAY):
-                yield from _lines(field.name, getattr(value, field.name), below)
-        case _:
-            text = _PRINTED.sub(_printed, str(value)).replace("0 (rounding)", "0")
-            yield _HASH.sub("...", f"{head} {text}".replace("\n", " "))
+    """Yield the lines of a value with a name, such as "title:"; "-" is an entry of a list, and "" the whole."""
+    head = f"{'  ' * depth}{name} " if name else ""
+    below = depth + bool(name)
+    indent = "  " * below
+    if isinstance(value, Provenance):  # versions, the machine and its clock
+        return
+    if isinstance(value, str) and value.lstrip().startswith("<"):
+        yield from ([head.rstrip()] if name else [])
+        yield from (indent + path for path in _paths(value))
+    elif is_dataclass(value):
+        yield f"{head}{type(value).__name__}"
+        for each in fields(value):
+            own = getattr(value, each.name)
+            if each.name not in _OF_TODAY and not _is_default(each, own):
+                yield from _lines(f"{each.name}:", own, depth + 1)
+    elif isinstance(value, Mapping):
+        yield from ([head.rstrip()] if name else [])
+        for key, own in value.items():
+            yield from _lines(f"{key}:", own, below)
+    elif isinstance(value, Sequence) and not isinstance(value, str):
+        row = _row(value)
+        if row is not None and len(head) + len(row) <= _LONG:
+            yield (head + row).rstrip()
+        else:
+            yield from ([head.rstrip()] if name else [])
+            for own in value:
+                yield from _lines("-", own, below)
+    else:
+        text = _text(value)
+        first, *rest = _SENTENCE.split(text) if len(text) > _LONG else [text]
+        yield (head + first).rstrip()
+        yield from (f"{indent}{sentence}" for sentence in rest)
+
+
+def _is_default(field: Field[Any], value: Any) -> bool:
+    """Return True if a field has its default value, or an empty one."""
+    if isinstance(value, np.ndarray):
+        return value.size == 0
+    if value is None or (isinstance(value, str | Sequence | Mapping) and not value):
+        return True
+    default = field.default if field.default_factory is MISSING else field.default_factory()
+    return not isinstance(default, np.ndarray) and bool(default == value)
+
+
+def _row(values: Sequence[Any]) -> str | None:
+    """Return values in one line; None if some of them are not numbers or strings."""
+    drawn = any(isinstance(each, str) and each.lstrip().startswith("<") for each in values)
+    plain = all(each is None or isinstance(each, str | int | float | np.number) for each in values)
+    return " | ".join(map(_text, values)) if plain and not drawn else None
+
+
+def _text(value: Any) -> str:
+    """Return a value as text without names of runs and without digits that rounding makes."""
+    if isinstance(value, float | np.floating):
+        return _digits(value)
+    if isinstance(value, np.ndarray):
+        return f"{value.shape} {_some(value.ravel().astype(float))}"
+    text = _PRINTED.sub(_printed, str(value)).replace("0 (rounding)", "0")
+    return _HASH.sub("...", " ".join(text.split()))
 
 
 def _paths(svg: str) -> Iterator[str]:
-    """Yield each text of a drawing, and style and places of each path that is no letter and of the marks."""
+    """Yield each text of a drawing, and style and places of each path that draws no letter and of the marks."""
     yield from re.findall("<!-- (.*?) -->", svg)  # what matplotlib notes of the letters
     root = ET.fromstring(svg)
     letters = {path for definitions in root.findall(".//{*}defs") for path in definitions.iter()}
     for path in root.findall(".//{*}path"):
         if path not in letters:
             places = [float(number) for number in re.findall(r"-?\d+(?:\.\d+)?", path.get("d", ""))]
-            yield f"{path.get('style', '')} {len(places)} {_some(np.round(places))}"
+            yield f"{path.get('style', '')} {len(places)} {_some(np.round(places))}".lstrip()
     marks: dict[str, list[float]] = {}
     for mark in root.findall(".//{*}use"):
         if mark.get(_HREF, "").startswith("#m"):  # no letter
@@ -138,18 +186,23 @@ def _printed(number: re.Match[str]) -> str:
     return "0" if not bound and abs(float(f"{digits}e{power.translate(_POWERS)}")) <= _ZERO else number[0]
 
 
+def _plain(line: str) -> str:
+    """Return a line with its powers of ten as exponents."""
+    return line.replace("·10", "e").translate(_POWERS)
+
+
 def _agree(was: str, now: str) -> bool:
-    """Return whether two lines have the same words, and numbers that differ by no more than rounding."""
+    """Return True if two lines have the same words, and numbers that differ by no more than rounding."""
     if was == now:
         return True
-    ours, theirs = (line.replace("·10", "e").translate(_POWERS) for line in (was, now))
+    ours, theirs = _plain(was), _plain(now)
     if _NUMBER.sub("", ours) != _NUMBER.sub("", theirs):
         return False
     return all(map(_is_same, _NUMBER.findall(ours), _NUMBER.findall(theirs)))
 
 
 def _is_same(was: str, now: str) -> bool:
-    """Return whether two numbers differ by no more than rounding."""
+    """Return True if two numbers differ by no more than rounding."""
     digits, _, exponent = was.partition("e")
     last = 10.0 ** (int(exponent or 0) - len(digits.partition(".")[2]))
     return abs(float(was) - float(now)) <= max(min(_SAME * abs(float(was)), 1.1 * last), _ZERO)

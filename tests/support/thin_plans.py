@@ -61,7 +61,7 @@ def make_runs(
     Args:
         folder: Shared by all test processes; the first process that needs a run simulates it.
         jobs: Overrides by name.
-        stands_for: Name of the run that stands for each; None lets each stand for itself.
+        stands_for: Name of the run that stands for each; None if each represents itself.
         config_dirs: Config folders of the study's own.
     """
 
@@ -110,7 +110,7 @@ def _digest(*texts: str) -> str:
 
 @contextmanager
 def _mine(path: Path, wait: bool) -> Iterator[Path | None]:
-    """Hold a file that no other process holds meanwhile; None where one does and nobody wants to wait."""
+    """Hold a file that no other process holds meanwhile; None where one does and `wait` is false."""
     with path.open("a") as lock:
         try:
             fcntl.flock(lock, fcntl.LOCK_EX | (0 if wait else fcntl.LOCK_NB))

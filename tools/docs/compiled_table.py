@@ -5,29 +5,8 @@ from collections.abc import Iterator
 from runner.config.compose.compose import compose
 from runner.config.validation import validate
 from runner.simulation.assembly import assemble, assemble_program
+from tools.laws import LAWS
 
-_LAWS = {
-    "adaptive": ("robot=macro", "controller=adaptive"),
-    "operational_space": ("robot=macro", "controller=operational_space"),
-    "computed_torque": ("robot=macro", "controller=computed_torque"),
-    "iterative_learning": (
-        "robot=macro",
-        "controller=iterative_learning",
-        "trajectory=circle",
-        "trajectory.easing=none",
-        "duration=14",
-    ),
-    "joint_pd": ("robot=macro", "controller=joint_pd"),
-    "joint_pid": ("robot=macro", "controller=joint_pid"),
-    "passivity": ("robot=macro", "controller=passivity"),
-    "sliding_mode": ("robot=macro", "controller=sliding_mode"),
-    "whole_body": ("robot=combined", "controller=whole_body"),
-    "macro_mini": ("robot=combined", "controller=macro_mini"),
-    "impedance": ("robot=macro", "controller=impedance"),
-    "hybrid_force": ("robot=macro", "controller=hybrid_force"),
-    "differential_inverse_kinematics": ("robot=xarm7", "controller=differential_inverse_kinematics"),
-    "admittance": ("robot=meca500", "controller=admittance"),
-}
 _CASES = {
     "encoders with noise, bias, steps, differenced velocity": (
         "noise=thesis",
@@ -72,10 +51,11 @@ _BASE = ("robot=macro", "controller=operational_space", "trajectory=quintic")
 def compiled_section() -> Iterator[str]:
     """Yield the section."""
     yield _HEAD
-    plants = ("rk4", "bullet")
-    yield f"| Controller | {' | '.join(f'`plant={plant}`' for plant in plants)} |\n|---|---|---|\n"
-    for name, overrides in _LAWS.items():
-        yield f"| `{name}` | {' | '.join(_compiled(*overrides, f'plant={plant}') for plant in plants)} |\n"
+    engines = ("rk4", "bullet")
+    yield f"| Controller | {' | '.join(f'`plant={engine}`' for engine in engines)} |\n|---|---|---|\n"
+    for law in LAWS.values():
+        cells = (_compiled(*law.overrides, f"plant={law.plant(engine)}") for engine in engines)
+        yield f"| `{law.name}`{' with flexible joints' * law.flexible} | {' | '.join(cells)} |\n"
     yield "\n`operational_space` on `plant=rk4`, or the options of the line, with\n\n| | |\n|---|---|\n"
     for name, overrides in _CASES.items():
         own = {text.partition("=")[0]: text for text in (*_BASE, "plant=rk4", *overrides)}

@@ -1,4 +1,4 @@
-"""Writes docs/reference.md, all keys, metrics and commands, from the models: `python -m tools.docs.reference`.
+"""Writes docs/reference.md, all keys, metrics and commands, from the models; `make record` runs it.
 
 Meaning and unit of a key come from its model's docstring, what is allowed from its type, its default from conf/. So the
 page says what the code does; a test fails where it is stale.
@@ -39,7 +39,7 @@ PAGE = Path(__file__).resolve().parents[2] / "docs" / "reference.md"
 _HEAD = """\
 # Reference
 
-All config keys, metrics and commands, from the models by `python -m tools.docs.reference`. The command line has them:
+All config keys, metrics and commands, from the models by `make record`. The command line has them:
 
     $ runner --cfg job robot=macro
     $ runner list metrics

@@ -102,7 +102,7 @@ def files_of(outputs: Path) -> list[Path]:
 
 
 def flip(path: Path, draw: random.Random) -> bytes:
-    """Flip one bit of a file; return what it held."""
+    """Flip one bit of a file; return its former content."""
     content = path.read_bytes()
     place = draw.randrange(len(content))
     changed = bytearray(content)
@@ -112,7 +112,7 @@ def flip(path: Path, draw: random.Random) -> bytes:
 
 
 def damage(path: Path, others: Sequence[Path], draw: random.Random) -> bytes:
-    """Damage a file in one of many ways; return what it held."""
+    """Damage a file in one of many ways; return its former content."""
     content = path.read_bytes()
     first, last = sorted((draw.randrange(len(content) + 1), draw.randrange(len(content) + 1)))
     ways = [

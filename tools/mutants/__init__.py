@@ -46,7 +46,7 @@ def main(arguments: Sequence[str] = ()) -> bool:
         print(f"{len(places)} places in {len(sources)} modules")
         only = chosen.only
         mutants = again(only, places, sources) if only else draw(places, sources, chosen.sample, chosen.seed)
-        results = _tried(tree, mutants, sources, CoverageMap.read(tree), chosen)
+        results = _tried(tree, mutants, sources, CoverageMap.load(tree).of_passed(), chosen)
     print("\n".join(table(results)))
     return drawn or all(result["status"] in (KILLED, TIMEOUT) for result in results)
 

@@ -3,7 +3,7 @@
 import ast
 import functools
 from collections.abc import Iterable, Mapping
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from functools import cached_property
 from pathlib import Path
 from typing import Any
@@ -49,20 +49,33 @@ class CoverageMap:
         tests: Short names of tests.
         costs: CPU time of each test, shape (tests,) [s].
         ran: True where a test runs a block, shape (tests, blocks).
+        files: Paths of all files.
+        read: True where a test reads a file, shape (tests, files).
+        passed: True for a test that passed, shape (tests,).
     """
 
     blocks: tuple[str, ...] = ()
     tests: tuple[str, ...] = ()
     costs: np.ndarray[Any, Any] = field(default_factory=lambda: np.zeros(0))
     ran: np.ndarray[Any, Any] = field(default_factory=lambda: np.zeros((0, 0), dtype=bool))
+    files: tuple[str, ...] = ()
+    read: np.ndarray[Any, Any] = field(default_factory=lambda: np.zeros((0, 0), dtype=bool))
+    passed: np.ndarray[Any, Any] = field(default_factory=lambda: np.zeros(0, dtype=bool))
 
     @classmethod
-    def read(cls, tree: Path) -> "CoverageMap":
+    def load(cls, tree: Path) -> "CoverageMap":
         """Return the map of a checkout."""
         with np.load(tree / PLACE, allow_pickle=False) as stored:
-            blocks, tests = stored["blocks"].tolist(), stored["tests"].tolist()
+            blocks, tests, files = (stored[name].tolist() for name in ("blocks", "tests", "files"))
             ran = np.unpackbits(stored["ran"], axis=1, count=len(blocks)).astype(bool)
-            return cls(tuple(blocks), tuple(map(short, tests)), stored["costs"], ran)
+            read = np.unpackbits(stored["read"], axis=1, count=len(files)).astype(bool)
+            return cls(
+                tuple(blocks), tuple(map(short, tests)), stored["costs"], ran, tuple(files), read, stored["passed"]
+            )
+
+    def of_passed(self) -> "CoverageMap":
+        """Return the map without what tests run that failed or were skipped: they find no mutant."""
+        return replace(self, ran=self.ran & self.passed[:, None])
 
     @cached_property
     def _by_owner(self) -> dict[str, dict[str, dict[int, int]]]:
@@ -91,7 +104,7 @@ class CoverageMap:
         return (
             self._of_owners(mutant.path, users)
             or self._of_owners(mutant.path, owners)
-            or sorted({test for path in self._by_owner if mutant.path in _imported(tree / path)
+            or sorted({test for path in self._by_owner if mutant.path in imported(tree / path)
                        for test in self._of_owners(path, self._by_owner[path])})
         )  # fmt: skip
 
@@ -159,7 +172,7 @@ def _users(source: str, name: str) -> set[str]:
 
 
 @functools.cache
-def _imported(module: Path) -> frozenset[str]:
+def imported(module: Path) -> frozenset[str]:
     """Return the modules of the packages that a module imports by name, as paths."""
     names: set[str] = set()
     for node in ast.walk(ast.parse(module.read_text())):

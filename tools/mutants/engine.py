@@ -80,7 +80,7 @@ class Worker:
         return {"status": KILLED, **seen}
 
     def run(self, choice: Choice) -> dict[str, Any]:
-        """Run tests on the copy as it is; return the server's answer."""
+        """Run tests on the unchanged copy; return the server's answer."""
         cache, temporary = self._scratch / "cache", self._scratch / "temporary"
         shutil.rmtree(cache, ignore_errors=True)  # code that a law's former source gave
         shutil.rmtree(temporary, ignore_errors=True)
@@ -153,7 +153,7 @@ def try_all(
 
 
 def failing(tree: Path, finders: Mapping[str, str], limit: float) -> set[str]:
-    """Return those of some tests, given with their files, that fail on the checkout as it is."""
+    """Return those of some tests, given with their files, that fail on the unchanged checkout."""
     found: set[str] = set()
     with _working(tree, limit * (1 + len(finders)), ()) as worker:
         while left := {test: file for test, file in finders.items() if test not in found}:

@@ -25,6 +25,17 @@ def modules(tree: Path) -> list[str]:
     return sorted(str(path.relative_to(tree)) for name in PACKAGES for path in (tree / name).rglob("*.py"))
 
 
+def helpers(tree: Path) -> list[str]:
+    """Return the paths of the modules that tests use besides the packages, sorted; those of `inside` are left out."""
+    found = [path for name in ("tests/support", "tools", "bench") for path in (tree / name).rglob("*.py")]
+    return sorted(str(path.relative_to(tree)) for path in found if path.parent.name != INSIDE.name)
+
+
+def files(tree: Path) -> list[str]:
+    """Return the paths of all files of a copy, sorted."""
+    return sorted(str(path.relative_to(tree)) for path in tree.rglob("*") if path.is_file() and path.suffix != ".pyc")
+
+
 def python(tree: Path) -> Path:
     """Return the interpreter of a checkout."""
     return tree / ".venv" / "bin" / "python"

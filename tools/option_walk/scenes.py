@@ -4,6 +4,7 @@ from collections.abc import Mapping, Sequence
 from typing import Any, NamedTuple
 
 from runner.base.paths import package_dir
+from tools.laws import JOINT_LAWS, LAWS
 
 ENGINES: Mapping[str, Sequence[str]] = {
     "rk4": ["plant=rk4"],
@@ -54,16 +55,6 @@ _SENSOR = (
 _ROUGH = (
     "robot.friction.viscous=1 robot.friction.coulomb=0.5 robot.friction.static=0.8 robot.friction.asymmetry=0.1 "
     "robot.friction.stribeck_speed=0.05 robot.friction.sigmoid={level:1.0,steepness:20.0,shift:0.01}"
-)
-_LAWS = (
-    "computed_torque",
-    "joint_pd",
-    "joint_pid",
-    "passivity",
-    "sliding_mode",
-    "adaptive",
-    "operational_space",
-    "impedance",
 )
 _OWN = "noise=hysteresis", "noise=shifted", "mismatch=heavier", "mismatch=lighter", "mismatch=sampled"
 _SHAPES = {
@@ -126,14 +117,14 @@ SCENES: Mapping[str, Scene] = {
     ),
     **{
         law: Scene(f"{_LAW} controller={law} noise.position=1e-4", ["controller"], _OF_TASK)
-        for law in _LAWS if law not in ("operational_space", "impedance", "joint_pid")
+        for law in JOINT_LAWS
     },
     "joint_pid": Scene(
         f"{_LAW} controller=joint_pid torque_limits.max=2 noise.position=1e-3", ["controller"], _OF_TASK
     ),
     **{
         f"seven joints by {law}": Scene(f"{_SEVEN} controller={law}", _OF_TASK)
-        for law in (*_LAWS, "iterative_learning") if law != "impedance"
+        for law, its in LAWS.items() if {*_OF_TASK} <= {f"controller.{key}" for key in its.keys} and not its.flexible
     },
     "seven joints by motor_pd": Scene(
         f"{_SEVEN} robot.armature=0 controller=motor_pd plant.flexible_joints.static_deflection=unknown", _OF_TASK

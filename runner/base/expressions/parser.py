@@ -42,7 +42,7 @@ _FAULT = re.compile(r"(?P<lost>…|\.{3})|(?<=[\w')\]])\s+(?P<apart>\w+)|(?P<sig
 _TOLD = {
     "lost": "the text is lost here",
     "apart": "'{}' follows without a sign; a product needs its '*'",
-    "sign": "'{}' is no sign of arithmetic; signs: + - * / @ ^ ** = ( ) [ ] ,",
+    "sign": "'{}' is not a sign of arithmetic; signs: + - * / @ ^ ** = ( ) [ ] ,",
 }
 _NUMBER = re.compile(r"(\d+\.?\d*|\.\d+)([eE][+-]?\d+)?(?![\w.])")
 _PLACE = re.compile(r"[A-Za-z]|\d|[A-Za-z][+-]\d")
@@ -154,7 +154,7 @@ class _Reader:
                     self._refuse(node, f"the number {number[0]} is too large")
                 return Number(number[0], index)
         return self._refuse(
-            node, "is no arithmetic: numbers, names, + - * / @ ^ ( ) [ ] and functions with their arguments"
+            node, "is not arithmetic: numbers, names, + - * / @ ^ ( ) [ ] and functions with their arguments"
         )
 
     def _row(self, node: ast.expr, cells: Sequence[ast.expr]) -> Node:
@@ -164,7 +164,7 @@ class _Reader:
 
     def _call(self, node: ast.Call, function: str, index: int) -> Node:
         if function not in FUNCTIONS:
-            told = f"'{function}' is no function that can be called{nearest(function, FUNCTIONS)}"
+            told = f"'{function}' is not a function that can be called{nearest(function, FUNCTIONS)}"
             self._refuse(node, f"{told}; functions: {', '.join(FUNCTIONS)}; a product needs its '*'")
         if len(node.args) != FUNCTIONS[function]:
             self._refuse(node, f"{function} takes {FUNCTIONS[function]} argument(s), not {len(node.args)}")

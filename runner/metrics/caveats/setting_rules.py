@@ -77,7 +77,7 @@ def _tell_fixed(value: float, setting: Setting) -> str:
     wrong = [] if mismatch is None else [name for name, value in _factors(mismatch).items() if value != 1.0]
     wrong += ["payload"] if mismatch is not None and mismatch.payload else []
     return (
-        f"the {setting.repetitions} repetitions vary noise alone: mismatch.{', mismatch.'.join(wrong)} "
+        f"the {setting.repetitions} repetitions vary only noise: mismatch.{', mismatch.'.join(wrong)} "
         f"{'is' if len(wrong) == 1 else 'are'} the same in all (mismatch.spread: 0), so that their intervals say "
         "nothing of other wrong models"
     )

@@ -72,7 +72,7 @@ def audit_document(checked: Mapping[str, Sequence[CheckedEquation]]) -> Document
             ),
             Section("Provenance", (_provenance(),)),
         ),
-        notes=(_WORDS, f"Each square leads to its equations. All of them, whole, stand in {DATA} beside this report."),
+        notes=(_WORDS, f"Each square leads to its equations. All of them, whole, stand in {DATA} next to this report."),
         date=datetime.now(UTC).date().isoformat(),
     )
 
@@ -91,11 +91,11 @@ def _counts(checked: Mapping[str, Sequence[CheckedEquation]]) -> Table:
 
 def _reading() -> str:
     return (
-        "A form is checked as it stands wherever it can be read, even where the text is more likely to be at fault "
+        "A form is checked as printed wherever it can be read, even where the text is more likely to be at fault "
         "than the author: we have the text of the three sources as a machine read it, not their pages. It is emended "
         "only where it cannot be read, or where a line is plainly damaged, and then the emendation is stated and keeps "
-        "every other sign; a wrong label, too, is checked as it stands unless those around it are plainly "
-        "misread. Verdicts are worked out, not written down: the printed form, the emended and the "
+        "every other sign; a wrong label, too, is checked as printed unless those around it are plainly "
+        "misread. Verdicts are computed, not written down: the printed form, the emended and the "
         "corrected one are evaluated at the same configurations and compared with two independent derivations, one "
         "from Pinocchio's model or the like and one that shares only the arm's dimensions with it. The largest error "
         "is over all configurations and elements, the typical one the median over configurations of the largest "
@@ -205,7 +205,7 @@ def _runs(source: str, names: Iterable[str]) -> Section:
         )
         for words, run in found
     ]
-    caption = f"What becomes of a robot that uses a wrong formula of {source}, beside one that uses the corrected one."
+    caption = f"What becomes of a robot that uses a wrong formula of {source}, next to one that uses the corrected one."
     figures = [Curves(caption, panels[first : first + _PANELS]) for first in range(0, len(panels), _PANELS)]
     return Section("What a robot does when it uses the wrong formulas", (Items(told), *figures))
 

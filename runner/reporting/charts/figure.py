@@ -175,7 +175,7 @@ def thin(series: Series, points: int = POINTS) -> Series:
 
 
 def envelope(series: Series, samples: int) -> Series:
-    """Return a curve as the mean of every so many samples, with the least and the greatest of them as its band.
+    """Return a curve as the mean of every `samples` samples, with the least and the greatest of them as its band.
 
     So a curve that jumps at each sample is seen as wide as it jumps, and a smooth one stays a line.
 

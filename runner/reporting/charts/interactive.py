@@ -32,7 +32,7 @@ Json = dict[str, Any]
 _SYMBOLS = ("diamond", "square")  # of points beyond the palette
 _MODES = {"line": "lines", "dashed": "lines", "dotted": "lines", "points": "markers", "points_line": "lines+markers"}
 _DASHES = {"dashed": "dash", "dotted": "dot"}
-_LEGEND_WIDTH, _TITLE_WIDTH = 40, 45
+_LEGEND_WIDTH, _TITLE_WIDTH, _UPRIGHT_WIDTH = 40, 45, 26
 _POINTS = 500  # of a curve on a page: two for each pixel of a panel
 _MOST_NAMES = 16
 _FEW_DECADES = 2
@@ -74,7 +74,7 @@ def _panel(panel: Panel) -> Json:
     across = _axis(panel.x_label, panel.x_log, panel.x_range, [series.x for series in panel.series])
     layout = {
         "xaxis": across | _named_places(panel.x_names) if panel.x_names else across,
-        "yaxis": _axis(panel.y_label, panel.y_log, panel.y_range, heights),
+        "yaxis": _axis(panel.y_label, panel.y_log, panel.y_range, heights, _UPRIGHT_WIDTH),
         "showlegend": any(plain(series.name).strip() for series in panel.series),
         "hovermode": "x unified" if all(map(_compared, panel.series)) else "closest",
     }
@@ -159,8 +159,10 @@ def _band(series: Series, number: int) -> list[Json]:
     ]
 
 
-def _axis(label: str, log: bool, limits: tuple[float, float] | None, values: list[FloatArray]) -> Json:
-    title = {"text": _lines(label, _TITLE_WIDTH)}
+def _axis(
+    label: str, log: bool, limits: tuple[float, float] | None, values: list[FloatArray], width: int = _TITLE_WIDTH
+) -> Json:
+    title = {"text": _lines(label, width)}
     axis: Json = {"title": title, "type": "log" if log else "linear", "hoverformat": ".5~g"}
     shown = limits if limits is not None and usable(limits, log) else None
     if shown is not None:

@@ -141,7 +141,7 @@ class Names:
     room: float
 
     def put(self, axis: Axis, count: int) -> None:
-        """Name the places of an axis that has so many."""
+        """Name the places of an axis that has this many."""
         # A dollar sign begins a formula in a tick's label, and ticks are labelled again at every drawing.
         labels = [label.replace("$", r"\$") for label in self.labels]
         axis.set_ticks(range(0, count, self.step), labels)
@@ -180,7 +180,7 @@ def names_beside(names: Sequence[str], length: float, sheet: Sheet) -> Names:
 
 
 def _broken(text: str, most: int, lines: int = _MOST_LINES) -> list[str]:
-    """Return a name in so few lines of at most so many letters; nothing where that cannot be."""
+    """Return a name in at most `lines` lines of at most `most` letters; nothing if it does not fit."""
     found = [""]
     for part in filter(None, _PART.findall(text)):
         if found[-1] and len((found[-1] + part).rstrip()) > most:
@@ -197,11 +197,11 @@ def literal(label: Text, text: str) -> None:
 
 
 def wrap_text(text: str, characters: float) -> str:
-    """Return a string in lines of so many characters."""
+    """Return a string in lines of at most this many characters."""
     return "\n".join(textwrap.wrap(plain(text).strip(), max(10, int(characters))))
 
 
 def cut(text: str, characters: float) -> str:
-    """Return a string on one line of so many characters, its end cut off where it is longer."""
+    """Return a string on one line of at most this many characters, its end cut off where it is longer."""
     text, limit = plain(text).strip(), max(10, int(characters))
     return text if len(text) <= limit else text[: limit - 1] + "…"

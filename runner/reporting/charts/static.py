@@ -35,8 +35,8 @@ from runner.reporting.charts.sheet import (
 # Measures in inches, for letters of the size of a report; fixed margins, because a layout engine costs more time than
 # all the curves.
 _LEFT, _RIGHT, _BOTTOM, _BARE = 0.64, 0.12, 0.42, 0.24  # the last one below an axis without a label
-_HEIGHTS, _LOWER = {1: 1.25, 2: 1.2}, 0.95  # of the axes in so many columns, and in more
-_ROWS = {2: 1.05, 3: 0.8, 4: 0.64}  # the same in so many rows, and in more
+_HEIGHTS, _LOWER = {1: 1.25, 2: 1.2}, 0.95  # of the axes by number of columns, and in more
+_ROWS = {2: 1.05, 3: 0.8, 4: 0.64}  # the same by number of rows, and in more
 _ABOVE = 0.15  # by which a label next to an axis of curves may be longer than it
 _HANDLE, _GAP = 0.42, 0.12
 _LEAST = 1.55  # width of a panel
@@ -262,7 +262,7 @@ def _draw_panel(axes: Axes, frame: _Frame) -> list[Line2D]:
 
 
 def _mark(axes: Axes, which: Literal["x", "y"], most: int, whole: bool = False) -> None:
-    """Label the marks of an axis in one notation; of a linear one so many at most, only at whole numbers if asked."""
+    """Label the marks of an axis in one notation; of a linear one at most `most`, only at whole numbers if asked."""
     axis, (low, high) = (axes.xaxis, axes.get_xlim()) if which == "x" else (axes.yaxis, axes.get_ylim())
     log = axis.get_scale() == "log"
     write = scales.marks(low, high, log)

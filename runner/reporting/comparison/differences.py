@@ -58,6 +58,16 @@ class ConfigDifferences:
         """Names of all differences, each once; options first."""
         return list(dict.fromkeys(value.key for value in (*self.options, *self.values)))
 
+    def question(self, a: str, b: str) -> str:
+        """Return the question on the only value that differs, such as "Which controller: joint_pd (A) or pid (B)?".
+
+        It is empty if several values differ, or none.
+        """
+        first = self.options or self.values
+        if len(self.names) != 1 or len(first) != 1:
+            return ""
+        return f"Which {first[0].key}: {first[0].a} ({a}) or {first[0].b} ({b})?"
+
     def in_words(self, a: str, b: str) -> str:
         """Return a sentence that names what differs.
 

@@ -3,6 +3,7 @@
 import contextlib
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
+from itertools import combinations, product
 from typing import Any
 
 import numpy as np
@@ -17,9 +18,10 @@ from runner.statistics import Comparison, subtract
 from runner.store.axes import find_axis, group_cells, number_rows
 from runner.sweeps.differing import value_text
 from runner.sweeps.measurements import Measurements
+from runner.sweeps.question import SEED
 
-SEED = "seed"
-"""The axis whose levels are draws of one thing, like repetitions."""
+MOST_ORDERED = 6
+"""An axis with more values is compared only with its first value, not each value with each."""
 MOST_PAIRS = 1_000
 """Most draws in a comparison. A random selection replaces more: a million means of two are sorted in 0.1 s."""
 Cells = NDArray[np.intp]
@@ -88,8 +90,8 @@ def compare(pairs: Pairs, metric: str) -> Comparison | None:
     """Return the difference of the second cells from the first in a metric; None if no repetition is in both.
 
     Each draw, that is a repetition of a seed, counts once, with the mean over the pairs of cells: cells of one seed
-    share its draws, so they are not further evidence. If repetitions are copies of each other because nothing is
-    drawn, only the first one counts. Of more than MOST_PAIRS draws the same random selection is always taken.
+    share its draws, so they are not further evidence. If nothing is drawn, only the first draw counts and the
+    comparison is exact. Of more than MOST_PAIRS draws the same random selection is always taken.
 
     Args:
         pairs: The cells.
@@ -103,13 +105,15 @@ def compare(pairs: Pairs, metric: str) -> Comparison | None:
         return None
     kept, draw = np.unique(draws[both], return_inverse=True)
     differences = subtract(second[both], first[both])
-    if len(kept) > MOST_PAIRS:
+    if copies:
+        chosen = np.zeros(1, dtype=np.intp)
+    elif len(kept) > MOST_PAIRS:
         chosen = np.sort(np.random.default_rng(0).choice(len(kept), MOST_PAIRS, replace=False))
     else:
         chosen = np.arange(len(kept))
     one, other, by_draw = (_mean_by(draw, values)[chosen] for values in (first[both], second[both], differences))
     error = _error(pairs, metric) if metric in a.finer and metric in b.finer else None
-    return Comparison(one, other, by_draw, error, _largest_rounding(pairs, metric))
+    return Comparison(one, other, by_draw, error, _largest_rounding(pairs, metric), copies)
 
 
 def _largest_rounding(pairs: Pairs, metric: str) -> float:
@@ -154,10 +158,11 @@ def _mean_by(group: NDArray[np.intp], values: FloatArray) -> FloatArray:
 
 
 def level_pairs(measurements: Measurements, axis: str, within: Sequence[str] | None = None) -> list[Pairs]:
-    """Return the pairs of cells of each level of an axis and its first level; none if no two cells share seeds.
+    """Return the pairs of cells of any two levels of an axis; none if no two cells share seeds.
 
-    The first level is the smallest number, or the text that the sweep names first. The two cells of a pair have the
-    same levels of all other axes and the same seed.
+    Of more than MOST_ORDERED levels only those with the first one are returned. The first level is the smallest number,
+    or the text that the sweep names first. The two cells of a pair have the same levels of all other axes and the same
+    seed.
 
     Args:
         measurements: The sweep.
@@ -179,8 +184,9 @@ def level_pairs(measurements: Measurements, axis: str, within: Sequence[str] | N
     found = []
     for at, cells in group_cells(shown, np.arange(len(place))):
         names = {other.name: other.text(level) for other, level in zip(shown, at, strict=True)}
-        (first, of_first), *rest = ((level, some) for (level,), some in group_cells([chosen], cells))
-        for level, some in rest:
+        levels = [(level, some) for (level,), some in group_cells([chosen], cells)]
+        few = len(chosen.values) <= MOST_ORDERED
+        for (first, of_first), (level, some) in combinations(levels, 2) if few else product(levels[:1], levels[1:]):
             a, b = _partners(of_first, some, place[of_first], place[some])
             of_axis = "" if chosen.numbers is None else chosen.name
             pairs = Pairs(measurements, measurements, a, b, chosen.text(first), chosen.text(level), names, axis=of_axis)

@@ -6,8 +6,9 @@ from collections.abc import Sequence
 import numpy as np
 
 from runner.base.quantities import label_with_unit, quantity
-from runner.base.sanitize import few
-from runner.reporting.answers import EXPLAINED, HEADER, Answer, Asked, ask, judge, sentences
+from runner.base.sanitize import few, one_line
+from runner.reporting.answer_map import make_map
+from runner.reporting.answers import EXPLAINED, HEADER, PAIRS, Answer, Asked
 from runner.reporting.comparison.difference_figure import difference_panel
 from runner.reporting.comparison.pairs import Label, Pairs, label_text
 from runner.reporting.comparison.sweeps import (
@@ -36,7 +37,8 @@ from runner.reporting.document import (
 )
 from runner.reporting.markup import literal
 from runner.reporting.metric_titles import capital, title, whole_metrics
-from runner.reporting.sweep.subject import MOST_METRICS, key_label, shorten, spans_decades
+from runner.reporting.sentences import sentences, short_table
+from runner.reporting.sweep.subject import MOST_METRICS, key_label, main_metrics, shorten, spans_decades
 from runner.reporting.table import numbers
 from runner.reporting.words import join_values
 from runner.sweeps.measurements import Measurements
@@ -64,16 +66,17 @@ def comparison_document(sides: Sequence[Measurements], wanted: Sequence[str] = (
         compared = [
             Section(f"{one.pairs.second} against {one.pairs.first}", (), _sections(one, wanted)) for one in found
         ]
-    told = [one.differences.in_words(one.pairs.first, one.pairs.second) for one in found]
-    told += [text for one in found for text in sentences(one.answers)]
-    told += [NOISE_ALONE] if any(noise_alone([one.pairs.a, one.pairs.b]) for one in found) else []
+    lines = [text for one in found for text in sentences(one.answers)[:1]]
+    lines += [one.differences.in_words(one.pairs.first, one.pairs.second) for one in found]
+    lines += [NOISE_ALONE] if any(noise_alone([one.pairs.a, one.pairs.b]) for one in found) else []
     return Document(
-        title=f"{len(sides)} sweeps compared",
+        title=(len(found) == 1 and found[0].differences.question("A", "B")) or f"{len(sides)} sweeps compared",
         subtitle=literal(", ".join(f"{side.name}: {side.folder.resolve().name}" for side in sides)),
-        abstract=literal(" ".join(told)),
-        sections=[_sides(sides), *compared, _caveats(sides), _made(sides)],
+        abstract=literal("\n".join(map(one_line, lines))),
+        sections=[*compared, _sides(sides), _caveats(sides), _made(sides)],
         date=max(max(side.provenance["made on"]) for side in sides),
         key_numbers=_key_numbers(found[0]),
+        map=make_map(found[0].answers) if len(found) == 1 else None,
     )
 
 
@@ -87,6 +90,8 @@ def _key_numbers(found: SweepComparison) -> list[tuple[str, str, str]]:
     names = found.differences.names
     numbers.append((f"{a} and {b} differ in", format_count(len(names), "value", "values"), few(names, 1)))
     first = min(found.answers, key=lambda answer: answer.rank)
+    if first.at:  # no pooled number describes the cells
+        return numbers
     difference, interval, n, *_ = first.cells
     return [*numbers, (f"{title(first.metric)}, {b} - {a}", difference, f"{interval}, {n} pairs: {first.word}")]
 
@@ -102,11 +107,20 @@ def _sections(found: SweepComparison, wanted: Sequence[str]) -> list[Section]:
         Text(told) if len(found.differences.names) < 2 else Notice("warning", "More than one thing differs", told)
     )
     cells = Items([literal(text) for text in found.cells_told()])
+    texts = sentences(found.answers)[1:]
     return [
+        Section("Answers", [*([Items(list(map(literal, texts)))] if texts else []), _short(found)]),
         Section("What differs", [first, *_difference_tables(found), cells]),
         Section("Cell by cell", figure_blocks(found, wanted)),
         Section("Every metric", table_blocks(found, wanted)),
     ]
+
+
+def _short(found: SweepComparison) -> Table:
+    shown = choose_metrics(found, ())
+    names = main_metrics([found.pairs.a, found.pairs.b], [one.metric for one in shown])
+    return Table(literal(f"Each metric is a separate question. {PAIRS}"),
+                 *short_table([one for one in found.answers if one.metric in names]))  # fmt: skip
 
 
 def _caveats(sides: Sequence[Measurements]) -> Section:
@@ -155,12 +169,14 @@ def _difference_tables(found: SweepComparison) -> list[Block]:
 
 def figure_blocks(found: SweepComparison, wanted: Sequence[str]) -> list[Block]:
     """Return a figure of the first metrics that differ, or of the first ones."""
-    known = choose_metrics(found, wanted)
+    names = list(dict.fromkeys(one.metric for one in found.answers))
+    by_name = {one.metric: one for one in reversed(found.answers)}
+    known = [by_name[name] for name in (wanted or whole_metrics(names)) if name in by_name]
     moved = [one for one in known if any(counts_by_sign(one))] or known
     pairs = found.pairs
     a, b = pairs.first, pairs.second
     many = len(pairs) > _MOST_CELLS
-    panels = [(_against if many else _differences)(pairs, one.metric) for one in moved[:MOST_METRICS]]
+    panels = [_against(pairs, one.metric) if many else _differences(found, one.metric) for one in moved[:MOST_METRICS]]
     caption = (
         f"Median of each cell in {b} against that in {a}; on the line both are the same."
         if many
@@ -185,11 +201,12 @@ def _cells(pairs: Pairs) -> Table:
     return Table("The cells of the figure.", [*numbers("cell"), *pairs.keys], rows)
 
 
-def _differences(pairs: Pairs, metric: str) -> Panel:
+def _differences(found: SweepComparison, metric: str) -> Panel:
     """Return the differences of each cell; numbers are below the columns if the names are too long."""
+    pairs = found.pairs
+    answers = [one for one in found.answers if one.metric == metric and (one.at or len(pairs) == 1)]
     numbered = _numbered(pairs)
     labels = [label_text(label) for label in pairs.labels]
-    answers = judge(ask(list(pairs.each()), [metric]), [metric])
     columns = [(str(labels.index(label_text(one.at)) + 1) if numbered else _name(one.at), one) for one in answers]
     return difference_panel(columns, "cell" if numbered or not pairs.keys else ", ".join(pairs.keys))
 
@@ -210,8 +227,8 @@ def _against(pairs: Pairs, metric: str) -> Panel:
 
 
 def choose_metrics(found: SweepComparison, wanted: Sequence[str]) -> list[Answer]:
-    """Return the answers in the metrics asked for, or in all but those of one direction or joint, errors first."""
-    by_name = {one.metric: one for one in found.answers}
+    """Return the pooled answers in the metrics asked for, or in all but those of one direction or joint."""
+    by_name = {one.metric: one for one in reversed(found.answers) if not one.at or len(found.pairs) == 1}
     return [by_name[name] for name in (wanted or whole_metrics(by_name)) if name in by_name]
 
 
@@ -219,9 +236,11 @@ def table_blocks(found: SweepComparison, wanted: Sequence[str]) -> list[Block]:
     """Return the method, the table over all cells, and that of those with the largest differences."""
     a, b = found.pairs.first, found.pairs.second
     whole = choose_metrics(found, wanted)
-    parts = [one for one in found.answers if one not in whole]
+    parts = [one for one in found.answers if one not in whole and (not one.at or len(found.pairs) == 1)]
     text = f"The difference is {b} - {a}. {EXPLAINED} {POOLED}"
-    tables: list[Block] = [Text(text), _table("Every metric over all cells that both have.", found.pairs, whole)]
+    tables: list[Block] = [Text(text)]
+    if whole:
+        tables.append(_table("Every metric whose pooled number describes all cells.", found.pairs, whole))
     if parts:
         tables.append(_table("Metrics of one direction or joint.", found.pairs, parts, folded=True))
     if found.cells:

@@ -1,7 +1,7 @@
 """Comparison of two sweeps or runs by cell and repetition, and of the levels of one sweep axis."""
 
 import warnings
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from typing import Any
 
@@ -12,14 +12,18 @@ from runner.base.errors import RunnerError
 from runner.base.quantities import ROUNDING
 from runner.reporting.answers import Answer, Asked, ask, judge
 from runner.reporting.comparison.differences import ConfigDifferences, find_differences
-from runner.reporting.comparison.pairs import SEED, Label, Pairs, keep_common_seeds, label_text, level_pairs, match
+from runner.reporting.comparison.pairs import Label, Pairs, keep_common_seeds, label_text, level_pairs, match
+from runner.reporting.conditions import ALIKE, keep_described
 from runner.reporting.metric_titles import first_screen, is_part
 from runner.reporting.sweep.subject import main_metrics
 from runner.statistics import SMALLEST_SAMPLE
-from runner.store.axes import Axis
 from runner.store.run import Run
 from runner.store.sweep import Sweep
+from runner.sweeps.drawn import draws_model
 from runner.sweeps.measurements import Measurements, check_metrics, measure_run, measure_stored, stored_part
+
+MOST_CONDITIONS = 1_000
+"""Conditions up to which each is compared by itself; of more only the pooled comparison is made."""
 
 MOST_MOVEMENTS = 12
 """Cells with the largest differences that are named."""
@@ -29,8 +33,8 @@ NOISE_ALONE = (
 )
 
 POOLED = (
-    "Over all cells each draw counts once, by the mean of its cells. If the difference is above zero in some cells and "
-    "below in others, that number describes none of them."
+    "Over all cells each draw counts once, by the mean of its cells. This number is left out if the cells have "
+    f"different signs, or if the medians of either side differ by more than a factor of {ALIKE:g} between cells."
 )
 
 _MOST_OF_ONE = 3  # cells with the largest differences in the same metric
@@ -44,7 +48,7 @@ class SweepComparison:
     Attributes:
         pairs: Cells that are compared.
         differences: Config values that differ between these.
-        answers: Each metric over all cells.
+        answers: Each metric over all cells, unless that describes none of them, and in each cell.
         cells: The cells with the largest differences in a metric, relative to its size; the largest first.
         candidates: Number of cells and metrics that these were chosen from.
     """
@@ -115,20 +119,23 @@ def compare_sweeps(a: Measurements, b: Measurements, metrics: Sequence[str] = ()
     check_metrics(metrics, both)
     names = list(dict.fromkeys(metrics)) or both
     cells, candidates = _movements(pairs, list(metrics) or [name for name in names if not is_part(name)])
-    return SweepComparison(pairs, find_differences(pairs), answer([pairs], names, metrics), cells, candidates)
+    by_cell = list(pairs.each()) if 1 < len(pairs) <= MOST_CONDITIONS else []
+    return SweepComparison(pairs, find_differences(pairs), answer([pairs, *by_cell], names, metrics), cells, candidates)
 
 
 def compare_levels(
     measurements: Measurements, axis: str, within: Sequence[str] | None = None, metrics: Sequence[str] = ()
 ) -> list[Answer]:
-    """Compare the levels of one axis of a sweep: each with the first one, in every metric.
+    """Compare the levels of one axis of a sweep with each other in every metric, pooled and under each condition.
+
+    A condition is a combination of the levels of all other axes but the seed. A pooled answer that does not describe
+    its conditions is left out; see `keep_described`.
 
     Args:
         measurements: The sweep.
         axis: The axis, such as "controller".
-        within: Axes within each combination of whose levels the comparison is made; None for over all others, and then
-            within the levels of that other axis whose values change the first metric most. Cells of the remaining axes
-            are pooled; see `level_pairs`.
+        within: Axes within each combination of whose levels the comparison is made, with cells of the remaining axes
+            pooled if that describes them; None for over all other axes and under each condition.
         metrics: Names of metrics; empty for all.
 
     Raises:
@@ -136,14 +143,15 @@ def compare_levels(
     """
     check_metrics(metrics, measurements.values)
     pairs = level_pairs(measurements, axis, within or ())
-    if within is None and (other := _strongest(measurements, axis, metrics)):
-        pairs += level_pairs(measurements, axis, [other])
+    by_condition = [some for some in level_pairs(measurements, axis) if len(some.at) > len(within or ())]
+    pairs += by_condition if len(by_condition) <= MOST_CONDITIONS else []
     if not pairs:
         raise RunnerError(
             f"{axis}: no two cells differ only in it and share their seed, so none are compared in pairs; sweep it "
             "with one seed, or over the same seeds for each value"
         )
-    return answer(pairs, list(dict.fromkeys(metrics or measurements.values)), metrics)
+    names = list(dict.fromkeys(metrics or measurements.values))
+    return answer(pairs, names, metrics, whole=within is None)
 
 
 def compare_runs(a: Measurements, b: Measurements, metrics: Sequence[str] = ()) -> tuple[list[Answer], str]:
@@ -159,39 +167,29 @@ def compare_runs(a: Measurements, b: Measurements, metrics: Sequence[str] = ()) 
     names = [name for name in metrics or main_metrics([a, b]) if name in a.values and name in b.values]
     if not pairs.share_seeds.all():
         return [], f"not compared in pairs: seed {a.seeds[0]} and seed {b.seeds[0]} share no noise"
-    if count < SMALLEST_SAMPLE:
+    drawn = not (a.copies.all() and b.copies.all())
+    if drawn and count < SMALLEST_SAMPLE:
         return [], f"not compared in pairs: {count} repetitions in common, and {SMALLEST_SAMPLE} are needed"
     if not names:
         return [], "not compared in pairs: no metric is in both"
     return answer([pairs], names, metrics), ""
 
 
-def answer(pairs: Sequence[Pairs], names: Sequence[str], wanted: Sequence[str] = ()) -> list[Answer]:
+def answer(
+    pairs: Sequence[Pairs], names: Sequence[str], wanted: Sequence[str] = (), whole: bool = True
+) -> list[Answer]:
     """Return the answers to one question, metric by metric.
 
     Args:
         pairs: What is compared.
         names: Metrics that are compared.
-        wanted: Metrics that somebody named, in order; empty to choose those of the first screen.
+        wanted: Metrics that the user named, in order; empty to choose those of the first screen.
+        whole: False to leave out conditions that a pooled answer describes.
     """
     asked = ask(pairs, names)
     known = {one.metric: None for one in asked}
     first = [name for name in wanted if name in known] or main_metrics([pairs[0].a, pairs[0].b], known)
-    return judge(asked, first_screen(first))
-
-
-def _strongest(measurements: Measurements, axis: str, metrics: Sequence[str]) -> str:
-    """Return the other axis over whose levels the mean of the first metric's medians varies most; "" without one."""
-    others = [other for other in measurements.axes if other.name not in (axis, SEED)]
-    name, *_ = [*metrics, *main_metrics([measurements])]
-    medians = measurements.medians(name)
-    finite = np.isfinite(medians)
-
-    def variance(other: Axis) -> float:
-        means = [medians[finite & (other.level == level)] for level in np.unique(other.level)]
-        return float(np.var([some.mean() for some in means if some.size])) if finite.any() else 0.0
-
-    return max(others, key=variance).name if others else ""
+    return keep_described(judge(asked, first_screen(first)), whole)
 
 
 def answer_rows(answers: Sequence[Answer]) -> list[dict[str, Any]]:
@@ -219,16 +217,8 @@ def counts_by_sign(one: Asked) -> tuple[int, int]:
 
 def noise_alone(sides: Sequence[Measurements]) -> bool:
     """Return True if the repetitions of sweeps or runs draw only noise: nothing of the arm is drawn from the seed."""
-    mismatches = [config.get("mismatch", {}) for side in sides for config, _ in side.configs]
-    return min(side.repetitions for side in sides) > 1 and not any(
-        "kind" in mismatch or _draws(mismatch) for mismatch in mismatches
-    )
-
-
-def _draws(mismatch: Mapping[str, Any]) -> bool:
-    """Return True if a built-in mismatch has a spread, of all links or of one."""
-    of_links = [value for link in mismatch.get("link", {}).values() for key, value in link.items() if "spread" in key]
-    return any([mismatch.get("spread"), *of_links])
+    several = min(side.repetitions for side in sides) > 1 and not all(side.copies.all() for side in sides)
+    return several and not any(draws_model(config) for side in sides for config, _ in side.configs)
 
 
 def letter(place: int) -> str:

@@ -9,7 +9,7 @@ import numpy as np
 from runner.base.dotted_keys import dotted, leaves
 from runner.base.machine import read_machine
 from runner.base.sanitize import one_line
-from runner.reporting.answers import EXPLAINED, HEADER, Answer, Asked, ask, sentences, short_table
+from runner.reporting.answers import EXPLAINED, HEADER, PAIRS, Answer, Asked, ask
 from runner.reporting.comparison.differences import Value, find_differences
 from runner.reporting.comparison.pairs import label_text, match
 from runner.reporting.comparison.sweeps import (
@@ -22,6 +22,7 @@ from runner.reporting.comparison.sweeps import (
     noise_alone,
     size_told,
 )
+from runner.reporting.sentences import sentences, short_table
 from runner.reporting.sweep.subject import main_metrics
 from runner.reporting.table import Cell, Number, Table, numbers, terminal
 from runner.store.run import Run
@@ -153,6 +154,8 @@ def _short_lines(answers: Sequence[Answer]) -> Iterator[str]:
     if len(rows) > _MOST_ROWS:
         yield f"{len(rows) - _MOST_ROWS} more rows"
     yield ""
+    if any(one.interval for one in answers):
+        yield PAIRS
     yield ALL
 
 

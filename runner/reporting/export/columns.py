@@ -29,7 +29,7 @@ class Unit(NamedTuple):
     power: int = 0
 
     def __str__(self) -> str:
-        """Return the unit as it is read, such as "10⁻⁶ N m"; an empty string for 1."""
+        """Return the unit as read, such as "10⁻⁶ N m"; an empty string for 1."""
         power = f"10{str(self.power).translate(SUPERSCRIPT)}" if self.power else ""
         return f"{power} {unit_text(self.name)}".strip()
 

@@ -146,7 +146,7 @@ def _drawn(figure: Figure, sheet: Sheet) -> tuple[str, bytes]:
 
 
 def _fitted(svg: str, sheet: Sheet) -> str:
-    """Return a drawing of at most the width of the sheet: as it is, or smaller as a whole."""
+    """Return a drawing of at most the width of the sheet: unchanged, or smaller as a whole."""
     head, end, rest = svg.partition("<g ")
     width, height = _WIDTH.search(head), _HEIGHT.search(head)
     if width is None or height is None:

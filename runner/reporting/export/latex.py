@@ -79,7 +79,7 @@ def _title(column: PaperColumn) -> str:
 
 
 def _parts(column: PaperColumn, cell: Written) -> list[str]:
-    """Return what a cell fills: one place, or two in a column with intervals."""
+    """Return the entries of a cell: one place, or two in a column with intervals."""
     text = escape_latex(cell.text) if cell.unit is None else unit_macro(cell.unit)
     if column.unit is None:
         return [text]

@@ -26,7 +26,7 @@ class Pooled:
     """The rows of a table.
 
     Attributes:
-        measurements: A sweep with one cell for each row, whose repetitions are those of all cells behind it.
+        measurements: A sweep with one cell for each row, whose repetitions are those of all its cells.
         cells: The cells of the whole sweep behind each row.
         failed: Number of these that failed.
         seeds: Number of seeds behind each row; 1 if the seed was not swept.
@@ -39,7 +39,7 @@ class Pooled:
 
 
 def pool(measurements: Measurements, by: Sequence[str] | None = None, where: Sequence[str] = ()) -> Pooled:
-    """Put the cells of a sweep together that have the same values on some axes, and differ in the seed alone.
+    """Put the cells of a sweep together that have the same values on some axes, and differ only in the seed.
 
     Args:
         measurements: The sweep.

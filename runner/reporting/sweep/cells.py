@@ -10,7 +10,6 @@ from numpy.typing import NDArray
 from runner.reporting.charts.figure import spaced_indices
 from runner.reporting.document import Block, Notice, Origin, Section, Table, Text
 from runner.reporting.markup import literal
-from runner.reporting.metric_titles import capital
 from runner.reporting.sweep.subject import Subject, key_label, shorten
 from runner.reporting.table import numbers
 from runner.statistics import SMALLEST_SAMPLE
@@ -73,7 +72,7 @@ def axes_section(subject: Subject, command: str) -> Section:
 
 
 def _also_differs(subject: Subject) -> list[Block]:
-    """Return the table of config values that are not the same in all cells, though nobody swept them."""
+    """Return the table of config values that are not the same in all cells, though no axis sweeps them."""
     rows = []
     for difference in subject.measurements.differences[:_MOST_ROWS]:
         values = [f"{levels}: {shorten(text)}" if levels else shorten(text) for levels, text in difference.values]
@@ -142,17 +141,6 @@ def failed_table(what: str, header: Sequence[str], rows: Sequence[Sequence[str]]
     left = len(rows) - _MOST_FAILURES
     more = f" {left} more are in the list of runs and in the table of the sweep." if left > 0 else ""
     return Table(f"Failed {what}.{more}", header, rows[:_MOST_FAILURES])
-
-
-def causes_of_failure(subject: Subject) -> str:
-    """Return the caveats that all failed cells have and no other cell has, with the worst of them; or nothing."""
-    measurements = subject.measurements
-    failed = [status != "ok" for status in measurements.statuses]
-    rules = [{str(one["rule"]) for one in found} for found in measurements.caveats]
-    lost = [found for found, is_failed in zip(rules, failed, strict=True) if is_failed]
-    good = [found for found, is_failed in zip(rules, failed, strict=True) if not is_failed]
-    common = set.intersection(*lost) - set().union(*good) if lost else set()
-    return " ".join(f"{capital(text)}." for rule, *_, text in measurements.caveats_by_rule() if rule in common)
 
 
 def failing_cells(subject: Subject) -> str:

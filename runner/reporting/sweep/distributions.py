@@ -8,7 +8,7 @@ from runner.base.arrays import FloatArray
 from runner.base.errors import StoreError
 from runner.base.quantities import with_ends
 from runner.reporting.charts.figure import POINTS, spaced_indices
-from runner.reporting.document import Block, Curves, Notice, Panel, Section, Series, Table
+from runner.reporting.document import Block, Curves, Notice, Panel, Section, Series, Table, Text
 from runner.reporting.figures import overlaid, playback, torque_and_error
 from runner.reporting.markup import literal
 from runner.reporting.metric_titles import title
@@ -17,6 +17,7 @@ from runner.reporting.table import numbers
 from runner.statistics import median_interval
 from runner.store import Run
 from runner.store.axes import Axis
+from runner.sweeps.question import find_question, is_condition
 
 _MOST_LINES = 8
 
@@ -32,7 +33,8 @@ def section(subject: Subject) -> Section:
             "ends below 1 leaves repetitions that failed or never settled."
         )
         blocks.append(Curves(caption, panels, columns=min(2, len(panels))))
-    blocks.append(_in_order(subject, metric))
+    if not any(is_condition(axis.name) for axis in subject.axes):
+        blocks.append(_in_order(subject, metric))
     return Section("Distributions", blocks)
 
 
@@ -87,6 +89,23 @@ def _in_order(subject: Subject, metric: str) -> Curves:
         [panel],
         columns=1,
     )
+
+
+def motions_section(subject: Subject, shown: Mapping[int, Run], at: str) -> Section:
+    """Return the motions of cells that differ only in the question.
+
+    Args:
+        subject: The sweep.
+        shown: The run of each cell that is shown.
+        at: The condition that they share; empty for none.
+    """
+    asked = find_question(subject.axes, subject.measurements.question)
+    names = {
+        cell: f"{asked.name}={asked.text(int(asked.level[cell]))}" if asked else subject.cell_name(cell)
+        for cell in shown
+    }
+    where = [Text(literal(f"The runs differ only in {asked.name}, at {at}."))] if asked and at else []
+    return Section("Motions", (*where, *motion_blocks({names[cell]: run for cell, run in shown.items()})))
 
 
 def extremes_section(subject: Subject, shown: Mapping[int, Run]) -> Section:

@@ -6,13 +6,13 @@ import numpy as np
 
 from runner.base.arrays import FloatArray
 from runner.base.quantities import number
-from runner.reporting.charts.figure import spaced_indices
 from runner.reporting.charts.scales import EQUAL, widen_range
 from runner.reporting.document import Block, Curves, Panel, Section, Series, Table, Text
 from runner.reporting.markup import literal
-from runner.reporting.metric_titles import capital, title
-from runner.reporting.sweep.subject import MOST_GROUPS, QUANTILE_RULE, Subject, key_label, spans_decades
-from runner.statistics import PERMUTATIONS, EffectAnalysis
+from runner.reporting.metric_titles import title
+from runner.reporting.sweep.subject import MOST_GROUPS, Subject, key_label, spans_decades
+from runner.reporting.table import numbers
+from runner.statistics import EffectAnalysis
 from runner.store.axes import Axis
 
 _MOST_LEVELS = 200  # of an axis that are drawn, spread evenly
@@ -23,14 +23,11 @@ _MOST_OF_IT = 0.5  # share of the spread from which on the draws are named
 
 
 def section(subject: Subject) -> Section:
-    """Return the effect of each axis on each metric."""
-    told = Text(
-        f"{_explained(subject.effects)} {QUANTILE_RULE} No point is drawn where half of the runs or more failed."
-    )
-    blocks: list[Block] = [_table(subject.effects), told, *_main_effects(subject)]
+    """Return the share of the variation that each axis explains, and each cell over one axis or two."""
+    blocks: list[Block] = [_table(subject.effects), Text(_explained(subject.effects))]
     many = [axis.name for axis in subject.axes if len(axis.values) > MOST_GROUPS]
     if many:
-        blocks.insert(2, Text(literal(f"{', '.join(many)}: taken in {MOST_GROUPS} groups of neighbouring values.")))
+        blocks.append(Text(literal(f"{', '.join(many)}: taken in {MOST_GROUPS} groups of neighbouring values.")))
     if len(subject.axes) <= 2:
         blocks += [
             figure for figure in (cells_with_intervals(subject, metric) for metric in subject.metrics[:2]) if figure
@@ -48,17 +45,14 @@ def describe_shared_variation(subject: Subject) -> list[str]:
 
 
 def _table(analyses: dict[str, EffectAnalysis]) -> Table:
-    rows = []
-    for effects in zip(*(analysis.effects for analysis in analyses.values()), strict=True):
-        cells = []
-        for effect in effects:
-            tested = effect.remark if effect.p_value is None else f"p = {effect.p_value:.2g}"
-            cells.append(f"{_percent(effect.share)} ({tested})")
-        rows.append([" × ".join(effects[0].axes), *cells])
+    rows = [
+        [" × ".join(effects[0].axes), *(effect.remark or _percent(effect.share) for effect in effects)]
+        for effects in zip(*(analysis.effects for analysis in analyses.values()), strict=True)
+    ]
     return Table(
         "Share of the variation that each axis explains, and what two axes do together beyond what each does by "
         "itself.",
-        ["effect", *map(title, analyses)],
+        ["effect", *numbers(*map(title, analyses))],
         rows,
     )
 
@@ -72,69 +66,13 @@ def _explained(analyses: dict[str, EffectAnalysis]) -> str:
         for name, analysis in analyses.items()
         if analysis.shared is not None
     ]
-    tests = sum(effect.p_value is not None for analysis in analyses.values() for effect in analysis.effects)
     texts = [
-        f"A share is the sum of squares of an effect over the total; p is the share of {PERMUTATIONS} permutations of "
-        f"the residuals, and the order found, with as large an effect. Values used: n = {used}.",
+        f"A share is the sum of squares of an effect over the total; it is not tested. Values used: n = {used}.",
         f"Of {', '.join(logs)} the logarithms were taken, as the values span decades." if logs else "",
         f"Left out, as beyond every number: {', '.join(lost)}; shares of what is left may overlap." if lost else "",
-        f"Cells of one seed share the random draws of a repetition, which make {', '.join(shared)}. This is not "
-        "scatter between cells: the test takes it out first, and permutes within a repetition only."
-        if shared
-        else "",
-        _on_chance(tests) if tests else "",
+        f"Cells of one seed share the random draws of a repetition, which make {', '.join(shared)}." if shared else "",
     ]
     return literal(" ".join(text for text in texts if text))
-
-
-def _on_chance(tests: int) -> str:
-    """Return the number of chance findings of so many tests, with its condition."""
-    count = "There is one test" if tests == 1 else f"There are {tests} tests"
-    return (
-        "Where an axis has no effect and the values scatter alike at all of its levels, p falls below 0.05 in one test "
-        f"in twenty. {count}. Where they scatter more at some levels than at others, p is too small too often."
-    )
-
-
-def _main_effects(subject: Subject) -> list[Curves]:
-    figures: list[Curves] = []
-    for metric in subject.metrics[:3]:
-        panels = [_main_effect(subject, metric, axis) for axis in subject.axes]
-        present = np.sum(~np.isnan(subject.measurements.values[metric]), axis=1)
-        sizes = np.concatenate([np.bincount(axis.level, present, len(axis.values)) for axis in subject.axes]).astype(
-            int
-        )
-        n = f"n = {sizes.min()}" if sizes.min() == sizes.max() else f"n = {sizes.min()} to {sizes.max()}"
-        caption = (
-            f"{capital(title(metric))} and each axis: median of all repetitions at each value ({n}); shaded, or a bar, "
-            "the half of them between the quartiles."
-        )
-        figures.append(Curves(literal(caption), panels, columns=len(panels) if len(panels) <= 4 else 3))
-    return figures
-
-
-def _main_effect(subject: Subject, metric: str, axis: Axis) -> Panel:
-    shown = spaced_indices(len(axis.values), _MOST_LEVELS)
-    quartiles = np.full((3, len(shown)), np.nan)
-    for place, level in enumerate(shown):
-        pooled = _at_level(subject, metric, axis, level)
-        if pooled.size:
-            low, high = np.quantile(pooled, (0.25, 0.75), method="inverted_cdf")
-            quartiles[:, place] = low, np.median(pooled), high  # the median as in all tables
-    quartiles[~np.isfinite(quartiles)] = np.nan
-    x = places(axis)[shown]
-    low, median, high = quartiles
-    series = [Series("", x, median, "points_line", low, high, color=0)]
-    if axis.numbers is None:
-        series = at_texts(series[0])
-    return axis_panel("", axis, subject.label(metric), series, quartiles)
-
-
-def _at_level(subject: Subject, metric: str, axis: Axis, level: int) -> FloatArray:
-    """Return the values of a metric in all repetitions at a value of an axis, shape (n,)."""
-    values: FloatArray = subject.measurements.values[metric][axis.level == level]
-    present: FloatArray = values[~np.isnan(values)]
-    return present
 
 
 def _percent(share: float) -> str:
@@ -145,7 +83,7 @@ def cells_with_intervals(subject: Subject, metric: str) -> Curves | None:
     """Return the median of each cell over one axis, a curve for each value of the other axis if there are two.
 
     Returns:
-        The figure, or None where there are more curves or cells than a reader can distinguish.
+        The figure; None without a point, or with more curves or cells than a reader can distinguish.
     """
     # Along the axis with more values, and rather along numbers than along names.
     along, *other = sorted(subject.axes, key=lambda axis: (axis.numbers is None, -len(axis.values)))
@@ -165,6 +103,8 @@ def cells_with_intervals(subject: Subject, metric: str) -> Curves | None:
         curve = Series(name, x, median, "points_line", low, high, group, hints, runs)
         beside = _APART * (group - (count - 1) / 2)
         curves += [curve] if along.numbers is not None else at_texts(replace(curve, x=x + beside))
+    if not any(np.isfinite(series.y).any() for series in curves):
+        return None
     panel = axis_panel("", along, subject.label(metric), curves, np.concatenate([series.y for series in curves]))
     sizes = sorted({subject.measurements.of_cell(metric, cell).size for cell in range(len(groups))})
     n = f"n = {sizes[0]}" if len(sizes) == 1 else f"n = {sizes[0]} to {sizes[-1]}"

@@ -5,20 +5,33 @@ from collections.abc import Sequence
 import numpy as np
 
 from runner.base.errors import RunnerError
-from runner.base.quantities import quantity
+from runner.base.quantities import format_range
 from runner.base.sanitize import few
-from runner.reporting.answers import EXPLAINED, HEADER, Answer, ask, judge, sentences, short_table
+from runner.reporting.answers import EXPLAINED, HEADER, PAIRS, Answer
 from runner.reporting.charts.figure import spaced_indices
 from runner.reporting.comparison.difference_figure import difference_panel
-from runner.reporting.comparison.pairs import SEED, level_pairs
 from runner.reporting.comparison.sweeps import compare_levels
-from runner.reporting.document import Block, Curves, Section, Table, Text
+from runner.reporting.document import Block, Curves, Items, Section, Table, Text
 from runner.reporting.markup import literal
 from runner.reporting.metric_titles import capital, first_screen, title
+from runner.reporting.sentences import sentences, short_table, unanswerable
 from runner.reporting.sweep.subject import Subject, key_label
 from runner.reporting.table import numbers
 from runner.statistics import SMALLEST_SAMPLE
-from runner.store.axes import Axis
+from runner.store.axes import Axis, group_cells
+from runner.sweeps.question import find_question
+
+_CHECKS = {
+    "gains": ("controller.natural_frequency", "controller.damping_ratio"),
+    "period": ("controller.period",),
+    "plant step": ("plant.step",),
+    "path": ("trajectory",),
+    "torque limits": ("torque_limits",),
+    "measured velocity": ("noise.velocity",),
+    "model error": ("mismatch",),
+    "seed": ("seed",),
+}
+"""Settings that decide whether a comparison is fair, with their keys."""
 
 _MOST_KEYS = 3  # that vary with an axis and are named
 _MOST_COLUMNS = 12
@@ -26,10 +39,7 @@ _MOST_PAIRS = 24
 
 
 def find_answers(subject: Subject) -> list[Answer]:
-    """Return the answers to what a sweep asks; none where no two cells differ in one axis and share their seed.
-
-    Compared are the values of the first axis whose values are choices, such as controllers, else of the first one.
-    """
+    """Return the answers to the question of a sweep; none if no two cells differ only in it and share their seed."""
     axis = asked_axis(subject)
     if axis is None or not subject.metrics or too_few(subject):
         return []
@@ -40,49 +50,70 @@ def find_answers(subject: Subject) -> list[Answer]:
 
 
 def asked_axis(subject: Subject) -> Axis | None:
-    """Return the axis that a sweep asks about."""
-    axes = [axis for axis in subject.axes if axis.name != SEED]
-    return min(axes, key=lambda axis: axis.numbers is not None, default=None)
+    """Return the axis that a sweep asks about; None if all its axes are conditions."""
+    return find_question(subject.axes, subject.measurements.question)
 
 
-def answer_blocks(answers: Sequence[Answer]) -> list[Block]:
-    """Return the figure of paired differences and the short table."""
-    caption = "Medians and difference of each metric, and whether the difference is shown."
-    return [_figure(answers), Table(caption, *short_table(answers))]
+def answer_blocks(answers: Sequence[Answer], texts: Sequence[str] = ()) -> list[Block]:
+    """Return further answers in sentences, the figure of paired differences and the short table with its meaning."""
+    caption = f"Each metric is a separate question. {PAIRS if any(one.interval for one in answers) else ''}"
+    drawn = [one for one in answers if one.interval and one.is_tested]
+    return [
+        *([Items([literal(text) for text in texts])] if texts else []),
+        *([_figure(drawn)] if drawn else []),
+        Table(literal(caption), *short_table(answers, by_condition=not texts)),
+    ]
 
 
 def _figure(answers: Sequence[Answer]) -> Curves:
-    """Return the paired differences in the metrics of the first screen, at each level or of each compared value."""
+    """Return the paired differences in the metrics of the first screen, pooled and by condition, or of each pair."""
+    several = len({one.names for one in answers}) > 1
     overall = [one for one in answers if not one.at]
-    several = len({one.names for one in overall}) > 1
     panels = []
     for metric in first_screen(list(dict.fromkeys(one.metric for one in answers))):
-        shown = [one for one in (overall if several else answers) if one.metric == metric]
-        names = [one.names[1] if several else ", ".join(one.at.values()) or "all" for one in shown]
+        shown = [one for one in ((overall or answers) if several else answers) if one.metric == metric]
+        if not shown:
+            continue
+        names = [" - ".join(reversed(one.names)) if several else ", ".join(one.at.values()) or "all" for one in shown]
         kept = spaced_indices(len(shown), _MOST_COLUMNS)
-        across = (
-            "value compared" if several else ", ".join(map(key_label, next((one.at for one in shown if one.at), {})))
-        )
+        across = "compared" if several else ", ".join(map(key_label, next((one.at for one in shown if one.at), {})))
         panels.append(difference_panel([(names[place], shown[place]) for place in kept], across))
     first, second = answers[0].names
-    what = f"each minus {first}" if several else f"{second} minus {first}"
-    pairs = sorted({one.comparison.n for one in overall})
-    n = " to ".join(str(count) for count in dict.fromkeys([pairs[0], pairs[-1]]))
-    levels = "" if several or len(answers) == len(overall) else " and at each level"
-    caption = (
-        f"Differences, {what}, over all {n} pairs{levels}: a dot for each pair; point and bar are the "
-        "Hodges-Lehmann estimate and its interval, at the level of the signed-rank test corrected by Holm."
-    )
+    what = "of the second and the first" if several else f"{second} minus {first}"
+    caption = f"Differences, {what}: a dot for each pair, a point for their estimate and a bar for its interval."
     return Curves(literal(caption), panels)
 
 
 def causes(subject: Subject, answers: Sequence[Answer]) -> list[str]:
-    """Return the other keys that may cause a difference because they vary with the axis."""
+    """Return the other keys in which the values of the question differ, and which may cause a difference."""
     axis = asked_axis(subject)
     along = [found.key for found in subject.measurements.differences if axis is not None and axis.name in found.axes]
-    if axis is None or not along or not any(answer.sign for answer in answers):
+    if axis is None or not along or not answers:
         return []
     return [f"{few(along, _MOST_KEYS)} vary with {axis.name} and may be the cause: see Also differs."]
+
+
+def made_equal(subject: Subject) -> str:
+    """Return which settings that decide a comparison are the same for all values of the question, as a sentence."""
+    axis = asked_axis(subject)
+    measured = subject.measurements
+    if axis is None or not measured.configs:
+        return ""
+    others = [other for other in subject.axes if other is not axis]
+    groups = [
+        np.unique(measured.config_of_cells[cells]) for _, cells in group_cells(others, np.arange(len(axis.level)))
+    ]
+    same: list[str] = []
+    different: list[str] = []
+    for what, keys in _CHECKS.items():
+        if any(axis.name.startswith(key) for key in keys):
+            continue
+        values = [measured.resolved(key) for key in keys]
+        equal = all(some[place] == some[group[0]] for some in values for group in groups for place in group.tolist())
+        (same if equal else different).append(what)
+    parts = [f"the same for each value of {axis.name}: {', '.join(same)}"] if same else []
+    parts += [f"not the same: {', '.join(different)}"] if different else []
+    return f"{capital('; '.join(parts))}." if parts else ""
 
 
 def in_short(subject: Subject) -> str:
@@ -100,14 +131,13 @@ def range_told(subject: Subject) -> tuple[str, str] | None:
         return None
     metric = subject.metrics[0]
     ends = [float(subject.medians[metric][cell]) for cell in (subject.ranked[0], subject.ranked[-1])]
-    low, high = (quantity(end, subject.measurements.units[metric]) for end in ends)
-    return title(metric), f"{low} to {high}"
+    return title(metric), format_range(ends[0], ends[1], subject.measurements.units[metric])
 
 
 def too_few(subject: Subject) -> str:
-    """Return that a sweep has too few draws for any difference to be shown; empty where it has enough."""
+    """Return that a sweep has too few draws for any difference to be shown; empty if it has enough or draws nothing."""
     draws = np.unique(subject.measurements.draws).size
-    if draws >= SMALLEST_SAMPLE:
+    if draws >= SMALLEST_SAMPLE or subject.measurements.copies.any():
         return ""
     return (
         f"With {draws} pair{'s' if draws > 1 else ''} no difference can be shown: {SMALLEST_SAMPLE} are the fewest, as "
@@ -115,43 +145,20 @@ def too_few(subject: Subject) -> str:
     )
 
 
-def pairs_section(subject: Subject) -> Section | None:
-    """Return the comparisons of each metric, axis by axis; None where no two cells share their seeds."""
-    # Choices, such as controllers, are what is compared most.
-    axes = sorted(subject.axes, key=lambda axis: axis.numbers is not None)
-    tables: dict[str, list[Block]] = {metric: [] for metric in subject.metrics}
-    for axis in axes:
-        within = level_pairs(subject.measurements, axis.name)
-        overall = level_pairs(subject.measurements, axis.name, ()) if any(pair.at for pair in within) else []
-        chosen = [within[place] for place in spaced_indices(len(within), _MOST_PAIRS)]
-        fewer = (
-            f" ({len(chosen)} of {len(within)} pairs, spread evenly over the sweep)"
-            if len(chosen) < len(within)
-            else ""
-        )
-        found = judge(ask([*overall, *chosen], subject.metrics), first_screen(subject.metrics))
-        for metric, blocks in tables.items():
-            rows = [[one.place, ", ".join(one.names), *one.cells] for one in found if one.metric == metric]
-            if rows:
-                blocks.append(_table(subject, axis, metric, rows, bool(overall), fewer))
-    sections = [Section(capital(title(metric)), blocks) for metric, blocks in tables.items() if blocks]
-    if not sections:
-        return None
-    text = (
-        "The cells of a pair differ only in one axis, and in what goes with it (Also differs). "
-        f"{EXPLAINED} The option --metrics compares by other metrics."
-    )
-    return Section("Compared in pairs", [Text(text)], sections)
-
-
-def _table(
-    subject: Subject, axis: Axis, metric: str, rows: Sequence[Sequence[str]], overall: bool, fewer: str
-) -> Table:
-    within = "over all other axes and within each level of them" if overall else "as the only axis"
-    if any(other.name == SEED for other in subject.axes):
-        within += ", over all seeds"
-    return Table(
-        literal(f"{capital(title(metric))} by {axis.name}, {within}{fewer}."),
-        ["at", axis.name, *numbers(*HEADER), "the second is"],
-        rows,
-    )
+def pairs_section(answers: Sequence[Answer]) -> Section | None:
+    """Return every comparison that enough pairs can answer, metric by metric; None if there is none."""
+    sections = []
+    for metric in dict.fromkeys(one.metric for one in answers):
+        found = [one for one in answers if one.metric == metric]
+        kept = [one for one in found if one.is_answerable]
+        shown = [kept[place] for place in spaced_indices(len(kept), _MOST_PAIRS)]
+        fewer = f" ({len(shown)} of {len(kept)}, spread evenly)" if len(shown) < len(kept) else ""
+        rows = [[one.place, ", ".join(one.names), *one.cells] for one in shown]
+        caption = f"{capital(title(metric))}, pooled where that describes all conditions, and by condition{fewer}."
+        header = ["at", "compared", *numbers(*HEADER), "the second is"]
+        blocks: list[Block] = [Table(literal(caption), header, rows)] if rows else []
+        if len(kept) < len(found):
+            blocks.append(Text(literal(unanswerable([one for one in found if not one.is_answerable]))))
+        sections.append(Section(capital(title(metric)), blocks))
+    text = f"The cells of a pair differ only in one axis, and in what goes with it (Also differs). {EXPLAINED}"
+    return Section("Compared in pairs", [Text(text)], sections) if sections else None

@@ -9,16 +9,21 @@ from numpy.typing import NDArray
 
 from runner.base.arrays import FloatArray
 from runner.base.dotted_keys import split_override
+from runner.base.quantities import quantity
 from runner.base.sanitize import few, one_line
-from runner.reporting.answers import Answer, sentences
+from runner.reporting.answer_map import make_map
+from runner.reporting.answers import Answer
 from runner.reporting.charts.figure import spaced_indices
+from runner.reporting.comparison.pairs import label_text
 from runner.reporting.comparison.sweeps import NOISE_ALONE, noise_alone
+from runner.reporting.conditions import conditions_of
 from runner.reporting.document import Document, Provenance, RunList, Section, Text
+from runner.reporting.limits import limiting_joint
 from runner.reporting.markup import literal
+from runner.reporting.sentences import sentences
 from runner.reporting.sweep import distributions, effects, maps, spec, tradeoff
 from runner.reporting.sweep.cells import (
     axes_section,
-    causes_of_failure,
     caveats_sections,
     failing_cells,
     failures_section,
@@ -29,14 +34,17 @@ from runner.reporting.sweep.question import (
     asked_axis,
     causes,
     find_answers,
+    made_equal,
     pairs_section,
     range_told,
     too_few,
 )
+from runner.reporting.sweep.stability import causes_of_failure, remedies
 from runner.reporting.sweep.subject import Subject, choose
 from runner.reporting.words import join_values
 from runner.store import Sweep
 from runner.sweeps.measurements import Measurements, measure_sweep
+from runner.sweeps.question import SEED
 
 MOST_RUNS = 5000
 """Runs that the list of a report holds; of more, those at both ends of the order."""
@@ -64,8 +72,9 @@ def sweep_document(sweep: Sweep, metrics: Sequence[str] = (), runs_address: str 
     answers = find_answers(subject)
     several = bool(subject.metrics and subject.axes)
     sections = [failures_section(subject)] if measurements.failed else []
+    texts = sentences(answers)
     if answers:
-        sections.append(Section("Differences in pairs", answer_blocks(answers)))
+        sections.append(Section("Differences in pairs", answer_blocks(answers, texts[1:])))
     if sweep.spec:
         sections.append(spec.section(subject, sweep))
     if several and not answers:
@@ -76,7 +85,7 @@ def sweep_document(sweep: Sweep, metrics: Sequence[str] = (), runs_address: str 
     ranked = subject.ranked
     if several:
         sections += [effects.section(subject)] if answers else []
-        compared = pairs_section(subject)
+        compared = pairs_section(answers)
         sections += [compared] if compared is not None else []
     if subject.metrics and maps.is_readable(subject):
         sections.append(maps.section(subject))
@@ -85,20 +94,34 @@ def sweep_document(sweep: Sweep, metrics: Sequence[str] = (), runs_address: str 
         sections.append(tradeoff.section(subject, traded))
     if ranked:
         sections.append(distributions.section(subject))
-        cells = [ranked[place] for place in spaced_indices(len(ranked), _MOST_MOTIONS)]
-        runs = replace(sweep, hashes=subject.hashes(cells)).runs()
-        sections.append(distributions.extremes_section(subject, dict(zip(cells, runs, strict=True))))
+        sections.append(_motions(subject, sweep, answers))
     sections.append(_all_runs(subject, sweep, runs_address))
     sections.append(made_by(measurements, ("sweep", sweep.folder.name)))
     return Document(
         title=_title(subject),
         subtitle=", ".join(measurements.fixed),
-        abstract=literal("\n".join(map(one_line, _abstract(subject, sweep, answers)))),
+        abstract=literal("\n".join(map(one_line, _abstract(subject, sweep, answers, texts[:1])))),
         sections=sections,
         date=max(measurements.provenance["made on"]),
         key_numbers=_key_numbers(subject),
         shown=shown,
+        map=make_map(answers),
     )
+
+
+def _motions(subject: Subject, sweep: Sweep, answers: Sequence[Answer]) -> Section:
+    """Return the motions of the condition with the largest difference; without an answer those of some cells."""
+    first = next((one.metric for one in answers if one.rank == 0), "")
+    found = max(conditions_of(answers, first), key=lambda each: each.size, default=None)
+    pairs = [one.pairs for one in (found.answers if found else answers) if one.pairs and one.metric == first]
+    cells = list(dict.fromkeys(int(of[0]) for some in pairs for of in (some.of_a, some.of_b)))[:_MOST_MOTIONS]
+    if not cells:
+        ranked = subject.ranked
+        cells = [ranked[place] for place in spaced_indices(len(ranked), _MOST_MOTIONS)]
+    runs = dict(zip(cells, replace(sweep, hashes=subject.hashes(cells)).runs(), strict=True))
+    if answers:
+        return distributions.motions_section(subject, runs, label_text(found.at) if found else "")
+    return distributions.extremes_section(subject, runs)
 
 
 def _key_numbers(subject: Subject) -> list[tuple[str, str, str]]:
@@ -108,12 +131,22 @@ def _key_numbers(subject: Subject) -> list[tuple[str, str, str]]:
     numbers = [("cells", str(count), f"repetitions in each: {subject.measurements.repetitions}")]
     numbers.append(("failed", str(len(failed)), few([*map(subject.cell_name, failed)], _NAMED, "; ")))
     found = range_told(subject)
-    return numbers if found is None else [*numbers, (found[0], found[1], "medians of the cells")]
+    if found is not None:
+        values = subject.measurements.values[subject.metrics[0]]
+        finite = values[np.isfinite(values)]
+        worst = quantity(float(finite.max()), subject.measurements.units[subject.metrics[0]])
+        numbers.append((found[0], found[1], f"medians of the cells; worst draw {worst}"))
+    sides = [(subject.measurements, np.arange(count))]
+    joint = limiting_joint(sides)
+    return [*numbers, ("at its torque limit", *joint)] if joint[0] else numbers
 
 
 def _title(subject: Subject) -> str:
     axis = asked_axis(subject)
     if axis is None:
+        conditions = ", ".join(other.name for other in subject.axes if other.name != SEED)
+        if conditions:
+            return f"What {conditions} changes"
         return "Sweep of one cell" if not subject.axes else "Sweep over seeds"
     others = [other.name for other in subject.axes if other is not axis]
     within = f", over {', '.join(others)}" if others else ""
@@ -122,19 +155,21 @@ def _title(subject: Subject) -> str:
     return f"Which {axis.name}: {choices}{within}?" if axis.numbers is None else f"What {axis.name} changes{within}"
 
 
-def _abstract(subject: Subject, sweep: Sweep, answers: Sequence[Answer]) -> list[str]:
-    """Return the answers, then what may mislead and how large the sweep is: a paragraph each."""
+def _abstract(subject: Subject, sweep: Sweep, answers: Sequence[Answer], first: Sequence[str]) -> list[str]:
+    """Return what failed and the answer, then what may mislead: a paragraph each."""
     measurements = subject.measurements
     cells, failed = len(measurements.hashes), measurements.failed
     texts = []
     if failed:
-        told = [f"{failed} of {cells} cells failed.", failing_cells(subject), causes_of_failure(subject)]
-        texts.append(" ".join(filter(None, told)))
+        what = [f"{failed} of {cells} cells failed.", *(remedies(subject) or [failing_cells(subject)])]
+        texts.append(" ".join(filter(None, [*what, causes_of_failure(subject)])))
     texts += filter(None, [nothing_differs(subject)])
     if sweep.spec:
         texts.append(spec.summary(subject, sweep))
     few = too_few(subject) if subject.ranked and subject.axes else ""
-    texts += [few] if few else [*sentences(answers), *causes(subject, answers)]
+    texts += [few] if few else [*first, *causes(subject, answers)]
+    if answers:
+        texts += filter(None, [made_equal(subject)])
     if subject.ranked and subject.axes:
         texts += effects.describe_shared_variation(subject)
     rules = [f"{rule} ({count} of {cells} cells)" for rule, count, *_ in measurements.caveats_by_rule()]

@@ -65,7 +65,7 @@ class Failing:
         return high > _WIDE * low
 
     def pooled(self, members: Sequence[Sequence[int]]) -> "Failing":
-        """Return the same of groups of cells, which differ in their seed alone."""
+        """Return the same of groups of cells, which differ only in their seed."""
         failed, of = (
             np.array([int(counts[list(some)].sum()) for some in members]) for counts in (self.failed, self.of)
         )

@@ -21,10 +21,10 @@ if TYPE_CHECKING:
     from runner.statistics import EffectAnalysis
 
 MOST_METRICS = 5
-"""Metrics that a report compares when nobody has named any."""
+"""Metrics that a report compares if the user names none."""
 
 MOST_GROUPS = 64
-"""An axis with more values is taken in so many groups of neighbours where effects are computed."""
+"""An axis with more values is divided into this many groups of neighbours where effects are computed."""
 
 QUANTILE_RULE = (
     "A quantile is the smallest value that so large a share of the repetitions does not exceed: the value of one of "

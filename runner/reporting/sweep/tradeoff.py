@@ -11,12 +11,18 @@ from runner.reporting.document import Block, Curves, Panel, Section, Series, Tab
 from runner.reporting.metric_titles import COSTS, title
 from runner.reporting.sweep.subject import Subject, spans_decades
 from runner.reporting.table import numbers
+from runner.sweeps.question import is_condition
 
 _MOST_ROWS = 12
 
 
 def pair(subject: Subject) -> tuple[str, str] | None:
-    """Return the two metrics that are traded off: the first of the report, and what it costs, or its second."""
+    """Return the two metrics that are traded off: the first of the report, and what it costs, or its second.
+
+    None if an axis is a condition, such as the noise: nobody chooses it, so that a front over it says nothing.
+    """
+    if any(is_condition(axis.name) for axis in subject.axes):
+        return None
     first, rest = subject.metrics[0], subject.metrics[1:]
     costs = [name for name in COSTS if name in rest]
     found = [name for name in (*costs, *rest) if np.unique(_finite(subject.medians[name])).size > 1]

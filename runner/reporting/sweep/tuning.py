@@ -13,13 +13,14 @@ from runner.base.arrays import FloatArray
 from runner.base.quantities import number, quantity
 from runner.config.compose.units import key_unit
 from runner.plugins.metric_units import units
-from runner.reporting.answers import CHOSEN, Answer, sentences
+from runner.reporting.answers import CHOSEN, Answer
 from runner.reporting.charts.figure import spaced_indices
 from runner.reporting.comparison.sweeps import compare_runs
 from runner.reporting.document import Block, Curves, Document, Notice, Origin, Panel, Section, Series, Table, Text
 from runner.reporting.figures import cover
 from runner.reporting.markup import literal
 from runner.reporting.metric_titles import metric_label, title
+from runner.reporting.sentences import sentences
 from runner.reporting.sweep.cells import caveats_sections, failed_table
 from runner.reporting.sweep.distributions import motion_blocks
 from runner.reporting.sweep.question import answer_blocks
@@ -27,6 +28,7 @@ from runner.reporting.sweep.report import list_runs, made_by, run_command
 from runner.reporting.sweep.subject import Subject, key_label, main_metrics, spans_decades
 from runner.reporting.table import numbers
 from runner.store import Run, Sweep, open_run
+from runner.sweeps.finer_step import work_out
 from runner.sweeps.measurements import Measurements, measure_run, measure_sweep
 from runner.sweeps.tuning.key import Key
 from runner.sweeps.tuning.objective import Objective, best
@@ -146,7 +148,7 @@ def tuning_document(tuning: Tuning, folder: Path) -> Document:
     return Document(
         title=f"Tuning to {goals}",
         subtitle=", ".join(tuning.study.overrides),
-        abstract=literal("\n".join([_abstract(trials), *texts])),
+        abstract=literal("\n".join([*texts, _abstract(trials)])),
         sections=sections,
         date=max(measurements.provenance.get("made on", [""])),
         cover=shown,
@@ -159,14 +161,17 @@ def compare_on_fresh_seed(tuning: Tuning) -> tuple[list[Answer], list[str]]:
     if tuning.fresh is None:
         return [], [CHOSEN] if best(tuning.trials, tuning.study.objectives) else []
     names = "default", f"trial {tuning.fresh.trial}"
-    runs = [open_run(tuning.folder.parents[1] / "runs" / run) for run in (tuning.fresh.default, tuning.fresh.tuned)]
+    outputs = tuning.folder.parents[1]
+    runs = [open_run(outputs / "runs" / run) for run in (tuning.fresh.default, tuning.fresh.tuned)]
+    work_out(outputs, runs)
     sides = [measure_run(run, name) for run, name in zip(runs, names, strict=True)]
     metrics = [*(objective.metric for objective in tuning.study.objectives), *main_metrics(sides)]
     answers, why = compare_runs(sides[0], sides[1], list(dict.fromkeys(metrics)))
     seed, repetitions = (runs[0].config[key] for key in ("seed", "repetitions"))
     failed = [f"{name} {run.failure}." for name, run in zip(names, runs, strict=True) if run.failure]
     texts = sentences(answers) or [f"{why}."]
-    return answers, [f"With seed {seed}, which chose nothing, and {repetitions} repetitions:", *failed, *texts]
+    drawn = f"Default and tuned on fresh draws: seed {seed}, {repetitions} repetitions; no trial was chosen by them."
+    return answers, [*texts[:1], *failed, drawn, *texts[1:]]
 
 
 def _key_numbers(trials: Trials) -> list[tuple[str, str, str]]:

@@ -38,7 +38,7 @@ def loads_of(run: Run) -> FloatArray:
 
 
 def added_inertia(run: Run, shorter: float = 1.0) -> FloatArray:
-    """Return h D + h^2 K of each servo, in kg m^2, with a period h so many times that of the run."""
+    """Return h D + h^2 K of each servo, in kg m^2, with a period h of `shorter` times that of the run."""
     servo = run.config["plant"]["servo"]
     K, period = float(servo["stiffness"]), shorter * float(servo["period"])
     inertia = np.diagonal(run.model.mass_matrix(np.array(run.config["robot"]["home"])))
@@ -76,7 +76,7 @@ def bounces(run: Run) -> bool:
 
 
 def degrees(angle: float) -> float:
-    """Return an angle of so many rad in degrees."""
+    """Return an angle in rad in degrees."""
     return float(np.degrees(angle))
 
 
@@ -111,7 +111,7 @@ def filtered_turn(run: Run) -> float:
 
 
 def as_felt(run: Run) -> FloatArray:
-    """Return the wall's push as it is felt, shape (T,), in N; what is felt is the reading of a tick before."""
+    """Return the wall's push as felt, shape (T,), in N; what is felt is the reading of a tick before."""
     return np.append(-wrenches(run, "felt")[1:, 0], np.nan)
 
 

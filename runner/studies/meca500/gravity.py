@@ -14,7 +14,7 @@ _EXACT = "gravity/noise/0"
 _ORIENTATIONS = 300
 _INTERVAL, _HALF = 95.0, 1.959964  # per cent that an interval holds, and its half width in standard deviations
 _SCALED = {"kg": ("g", 1e3), "rad": ("mrad", 1e3), "m": ("mm", 1e3), "N": ("mN", 1e3), "N m": ("mN m", 1e3)}
-_CASES = ("nothing taken off", "biases alone", "identified tool and biases")
+_CASES = ("nothing taken off", "only biases", "identified tool and biases")
 
 
 def identified(done: Calibration) -> dict[str, float]:

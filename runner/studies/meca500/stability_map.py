@@ -52,7 +52,7 @@ def contact(run: Run) -> dict[str, float]:
 
 
 def bound_at(runs: Runs, run: str, delay: int) -> Callable[[float], float]:
-    """Return the stiffest wall, in N/m, of ideal joints so many ticks late under a run's law, by sample time in ms."""
+    """Return the stiffest wall, in N/m, of ideal joints that many ticks late under a run's law, by period in ms."""
     law = law_in(runs[run].config)
     return lambda period: stiffest_wall(law, 1e-3 * period, 0, 0.0, delay)
 

@@ -41,7 +41,7 @@ _FINEST, _COARSER = 1e-15, 1e-12  # tolerances; SciPy takes 2e-14 for the relati
 
 
 class Interpreted(Rk4):
-    """The Runge-Kutta plant with Pinocchio's accelerations, as it is where nothing can be compiled."""
+    """The Runge-Kutta plant with Pinocchio's accelerations, as used where nothing can be compiled."""
 
     def __init__(self, model: RobotModel, step: float, steps_per_tick: int) -> None:
         super().__init__(model, step, steps_per_tick)

@@ -66,7 +66,7 @@ class Judged:
         return sum(verdict != self.verdict for verdict in verdicts)
 
     def quantiles(self) -> FloatArray:
-        """Return median, 1 % and 99 % quantile; infinite where so many seeds have no value, empty of a failed run."""
+        """Return median, 1 % and 99 % quantile; infinite if that many seeds have no value, empty of a failed run."""
         return np.quantile(self.values, (0.5, *_ENDS), method="inverted_cdf") if self.values.size else self.values
 
     def number(self, what: Literal["alone", "drawn", "plant"]) -> float | None:
@@ -190,8 +190,8 @@ def most(
 
     Args:
         given: The claims judged by seeds.
-        what: "alone" or "drawn" for verdicts of single seeds, or of groups as large as the study's own run, that are
-            others, in per cent; "plant" for the factor between the medians on the study's plant and on that of the
+        what: `alone` or `drawn` for verdicts of single seeds, or of groups as large as the study's own run, that are
+            others, in per cent; `plant` for the factor between the medians on the study's plant and on that of the
             seeds.
         words: What it is called.
         claim: The number of one claim; 0 for all.
@@ -205,7 +205,7 @@ def most(
 
 
 def unanimous(given: Sequence[Judged], words: str) -> Measured:
-    """Return of how many judgements every seed alone says the same."""
+    """Return of how many judgements every single seed says the same."""
     return Measured(words, sum(bool(each.alone) and not each.otherwise(each.alone) for each in given))
 
 

@@ -171,7 +171,7 @@ def rings_after(run: Run) -> float:
 
 
 def beam_errors(tip_ratio: float, mode: int, name: str, color: int) -> list[Series]:
-    """Return by how much chains of so many springs ring faster than the beam they stand for, as points."""
+    """Return by how much chains of this many springs ring faster than the beam they stand for, as points."""
     parts = np.array(_PARTS)
     errors = np.array([frequency_errors(tip_ratio, int(n), mode)[mode - 1] for n in parts if n >= mode])
     return [Series(name, parts[parts >= mode].astype(float), errors, "points_line", color=color)]

@@ -55,7 +55,7 @@ def stiffest_wall(run: Run) -> float:
 
 
 def stiffest_of(mass: float, force_gain: float, late: int) -> Callable[[float], float]:
-    """Return the stiffest wall of a mass in kg against the period in ms, in N/m, so many ticks late."""
+    """Return the stiffest wall of a mass in kg against the period in ms, in N/m, this many ticks late."""
     limit = force_loop_limit(force_gain, 1.0, late)
     return lambda period: mass * (1e3 * limit / period) ** 2 / (1.0 + force_gain)
 

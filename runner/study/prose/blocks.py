@@ -35,7 +35,7 @@ def percent(share: Measured) -> Measured:
 
 
 def round_to(value: Measured | float, digits: int) -> str:
-    """Return a number, of a measured value with its unit, to so many digits."""
+    """Return a number, of a measured value with its unit, with `digits` digits."""
     return quantity(value.value, value.unit, digits) if isinstance(value, Measured) else number(value, digits)
 
 

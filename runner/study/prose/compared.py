@@ -22,7 +22,7 @@ _SHORT = 0.05  # s at the end in which torques that chatter are shown tick by ti
 _AT_REST = 1.0  # s at the end in which a printed steady-state error is drawn
 _POINTS, _TOGETHER = 1000, 0.02  # a longer curve is drawn as an envelope of intervals of this length, in s
 _NARROW = 0.01  # of the range of a curve: a band that is narrower on average is not drawn
-_VISIBLE = 20.0  # a printed value that is so many times larger or smaller than all curves is not drawn
+_VISIBLE = 20.0  # a printed value that is this many times larger or smaller than all curves is not drawn
 _EMPTY: FloatArray = np.zeros(0)
 
 
@@ -90,7 +90,7 @@ class _Figure:
         self._end = max(float(run.t[rows_until(run, until)][-1]) for run in shown.values())
 
     def torques(self, title: str, joints: Sequence[int], last: float | None = None) -> Panel:
-        """Return the torques of some joints, counted from 1; with `last` those of the last so many seconds."""
+        """Return the torques of some joints, counted from 1; with `last` those of the last seconds."""
         curves = self._curves({str(joint): f"tau{joint}" for joint in joints}, last)
         return Panel(title, "time (s)", "torque (N m)", curves)
 

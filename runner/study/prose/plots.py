@@ -66,7 +66,7 @@ def joints(runs: Runs, run: str, signal: Signal = "q", name: str = "q") -> list[
 
 
 def axes(runs: Runs, run: str, stem: str = "error", factor: float = 1.0) -> list[Series]:
-    """Return so many times a vector's x, y and z over time: tip, desired, error or another that has these columns."""
+    """Return a multiple of a vector's x, y and z over time: tip, desired, error or another that has these columns."""
     return [
         Series(axis, runs[run].t[: len(values)], factor * values, color=index)
         for index, axis in enumerate(AXES)

@@ -85,7 +85,7 @@ def of_next(what: Signal) -> Quantity:
 
 
 def difference(what: Signal, times: float = 1.0) -> Quantity:
-    """Return a signal less so many times that of another run, at their common rows."""
+    """Return a signal less a multiple of that of another run, at their common rows."""
 
     def value(*runs: Run) -> FloatArray:
         first, second = (what(run) if callable(what) else trace_of(what, run) for run in runs)
@@ -206,7 +206,7 @@ def size_of(what: Callable[..., float]) -> Quantity:
 
 
 def scaled(factor: float, what: Callable[..., float]) -> Quantity:
-    """Return so many times a number, such as 1000 for mm."""
+    """Return a multiple of a number, such as 1000 for mm."""
     return factor * Quantity(what)
 
 
@@ -222,7 +222,7 @@ def setting(key: str, factor: float = 1.0) -> Quantity:
 
 
 def metric_of(name: str, factor: float = 1.0) -> Quantity:
-    """Return so many times the median of a metric."""
+    """Return a multiple of the median of a metric."""
     return factor * Quantity(lambda run, *_: run.median(name))
 
 

@@ -112,5 +112,5 @@ def test_what_is_no_calibration_is_refused(tmp_path, job):
         open_calibration(tmp_path)
     done = job()
     (done.folder / "result.json").write_bytes(sealed_json({"files": done.record["files"]}))
-    with pytest.raises(StoreError, match=r"it is no calibration's result: estimates, truth, .* missing"):
+    with pytest.raises(StoreError, match=r"it is not a calibration's result: estimates, truth, .* missing"):
         open_calibration(done.folder)

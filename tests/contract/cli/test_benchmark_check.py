@@ -37,7 +37,7 @@ tunings:
 
 @pytest.fixture
 def mine(tmp_path, monkeypatch):
-    """A folder with a law of one's own, which is in use, and a study that takes it."""
+    """A folder with a user's law, which is in use, and a study that takes it."""
     (tmp_path / "mine" / "controller").mkdir(parents=True)
     for file in (f"{LAW}.py", CONFIG):
         shutil.copy(EXAMPLE / file, tmp_path / "mine" / file)
@@ -87,7 +87,7 @@ def test_a_law_without_ranges_has_one_trial_of_each_tuning_and_the_same_run_with
     (mine / f"{LAW}.ranges.yaml").unlink()
     arm, alone, _ = told(mine)
     assert arm.endswith("; 2 trials, 6 long runs, 2 runs")
-    assert alone == "no ranges in gravity_pd.ranges.yaml: the law is compared with the values of its config alone"
+    assert alone == "no ranges in gravity_pd.ranges.yaml: the law is compared only with the values of its config"
 
 
 @pytest.mark.parametrize(
@@ -159,4 +159,4 @@ def test_what_cannot_be_found_is_bad_input(cli, mine, monkeypatch):
     assert "no file nowhere.py" in cli("benchmark", "check", "nowhere.py").err
     (mine / "controller" / f"{LAW}.yaml").unlink()
     ending = cli("benchmark", "check", mine / f"{LAW}.py")
-    assert (ending.code, "no config beside it" in ending.err) == (2, True)
+    assert (ending.code, "no config next to it" in ending.err) == (2, True)

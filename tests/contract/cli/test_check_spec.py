@@ -13,7 +13,7 @@ BOUND = "spec.metrics.cross_track_error.max"
 
 @pytest.fixture
 def cut(copy_run):
-    """Return a bound that so many of the 40 repetitions break, which are stored without one."""
+    """Return a bound that this many of the 40 repetitions break, which are stored without one."""
     values = np.sort(open_run(copy_run("rk4")).values("cross_track_error"))
     return lambda failing: f"{BOUND}={float(values[39 - failing] + values[min(40 - failing, 39)]) / 2}"
 

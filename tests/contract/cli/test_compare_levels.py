@@ -1,6 +1,10 @@
 """`runner compare SWEEP --by AXIS`: the levels of an axis within those of the others."""
 
+import shutil
+
 import pytest
+
+import runner
 
 TASK = ("robot=macro", "duration=0.05", "noise=thesis", "repetitions=8", "hydra.sweeper.workers=0")
 
@@ -28,7 +32,7 @@ def test_levels_are_compared_within_each_level_of_the_other_axis(cli, folder):
     assert [first[0], *(row[0] for row in others)] == ["all", "gravity=9.7", "gravity=9.81"]
     assert first[1:3] == ["computed_torque,", "operational_space"]
     assert "\nRms torque: " in ending.out  # the answer is before the table
-    assert "p is corrected within the family (Holm)" in ending.out
+    assert "corrected for all comparisons of a metric" in ending.out
     assert "peak_torque" not in ending.out
 
 
@@ -64,14 +68,13 @@ def test_the_answer_comes_first_and_every_metric_when_asked(cli, folder):
 @pytest.mark.parametrize(
     ("arguments", "message"),
     [
-        ((), "only one sweep. Add a second one, or compare the levels of an axis (controller, gravity)"),
         (
             ("--by", "controler"),
             "--by: unknown axis 'controler'. Allowed: controller, gravity. Did you mean 'controller'?",
         ),
         (("--by", "controller", "--within", "robot"), "--within: unknown axis 'robot'"),
         (("--by", "controller", "--metrics", "torque"), "unknown metric 'torque'"),
-        (("--within", "controller"), "--within: needs --by AXIS"),
+        (("--within", "controller"), "within: controller is the compared axis"),
     ],
 )
 def test_bad_arguments_are_refused_in_a_line(cli, folder, arguments, message):
@@ -79,6 +82,33 @@ def test_bad_arguments_are_refused_in_a_line(cli, folder, arguments, message):
     assert (ending.code, ending.out) == (2, "")
     assert message in ending.err
     assert ending.err.count("\n") == 1
+
+
+def test_the_question_is_the_law_and_by_asks_another_which_is_kept(cli, folder, tmp_path):
+    copied = tmp_path / "outputs" / "sweeps" / folder.name
+    shutil.copytree(folder.parent.parent, tmp_path / "outputs")
+    (copied / "question.json").unlink(missing_ok=True)  # of another test
+    assert "; by controller\n" in cli("compare", copied).out
+    assert not (copied / "question.json").exists()
+    assert "; by gravity\n" in cli("compare", copied, "--by", "gravity").out
+    assert "; by gravity\n" in cli("compare", copied).out
+    opened = runner.open_sweep(copied)
+    assert set(opened.compare(metrics="rms_torque")["first"]) == {"9.7"}
+    assert "gravity=9.7" in cli("results", tmp_path / "outputs").out
+    page = cli("report", copied, "--format", "html").folder.joinpath("report.html")
+    assert "<h1>What gravity changes, over controller</h1>" in page.read_text()
+    page = cli("report", copied, "--format", "html", "--by", "controller").folder.joinpath("report.html")
+    assert "<h1>Which controller: computed_torque or operational_space, over gravity?</h1>" in page.read_text()
+    assert cli("verify", tmp_path / "outputs").code == 0
+    bad = cli("report", copied, "--by", "controler")
+    assert (bad.code, bad.out) == (2, "")
+    assert "--by: unknown axis 'controler'. Allowed: controller, gravity." in bad.err
+
+
+def test_a_sweep_over_conditions_needs_by(cli):
+    ending = cli("compare", cli("-m", *TASK, "gravity=9.81,9.7").folder)
+    assert (ending.code, ending.out) == (2, "")
+    assert "only one sweep, over conditions only. Add a second one, or compare the levels of an axis" in ending.err
 
 
 def test_by_is_for_one_sweep(cli, folder):

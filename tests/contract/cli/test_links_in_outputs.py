@@ -18,7 +18,7 @@ OLD = 0.0
 
 @pytest.fixture
 def victim(tmp_path):
-    """A folder of somebody, with projects that look like a run and a report."""
+    """A folder of another user, with projects that look like a run and a report."""
     folder = tmp_path / "victim"
     for project, name in (("project1", "config.yaml"), ("project2", "report.html")):
         (folder / project).mkdir(parents=True)

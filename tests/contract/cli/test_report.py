@@ -74,7 +74,7 @@ def test_several_sweeps_are_compared(cli):
     ]
     ending = cli("report", *folders, "--format", "html")
     page = ending.folder.joinpath("report.html").read_text()
-    assert "2 sweeps compared" in page
+    assert "Which torque_limits.max: 30 (A) or 31 (B)?" in page
     assert "A and B differ only in torque_limits.max: 30 against 31." in page
     chosen = cli("report", *folders, "--format", "html", "--metrics", "energy").folder
     assert chosen != ending.folder

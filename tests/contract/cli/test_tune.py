@@ -30,7 +30,7 @@ def test_the_best_trial_is_told_and_the_report_made_the_same_each_time(cli, tmp_
     assert re.match(
         r"chosen: peak_torque [\d.]+ N m with robot=macro trajectory=quintic duration=0.05 controller", best
     )
-    told = "0 of them failed\nrunner: With seed 1, which chose nothing, and 8 repetitions:\nrunner: Largest torque"
+    told = "0 of them failed\nrunner: Largest torque: "
     assert f"runner: 4 trials, {told}" in ending.err
     content = {path.name: path.read_bytes() for path in ending.folder.iterdir()}
     assert cli(*TUNE).folder == ending.folder

@@ -91,7 +91,7 @@ def test_a_config_that_fits_no_run_is_a_row_and_one_sentence(cli, copy_sweep, pl
     for words in (("table", runs[0]), ("compare", *runs)):
         ending = cli(*words)
         assert (ending.code, ending.out) == (2, "")
-        assert f"config.yaml: it is no run's config: {expected}" in ending.err
+        assert f"config.yaml: it is not a run's config: {expected}" in ending.err
         assert len(ending.err.splitlines()) == 1
 
 

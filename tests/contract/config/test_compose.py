@@ -118,7 +118,7 @@ def test_what_does_not_compose_is_said_in_one_line(cli, tmp_path, override, mess
         (b"position: ${robot.nope}\n", "noise.position: it refers to robot.nope, which the chosen robot lacks"),
         (b"defaults: [nope]\nposition: 0.0\n", "noise: no 'nope' (did you mean none?); known: none, own, thesis"),
         (b"", "noise.position: missing"),
-        (b"position: 0.0\n1: 2\n", "noise/own.yaml, line 2: the key '1' is no text"),
+        (b"position: 0.0\n1: 2\n", "noise/own.yaml, line 2: the key '1' is not a string"),
         (b"position: &a [*a]\n", "noise/own.yaml, line 1: *a stands inside of &a"),
         (b"position: " + b"[" * 900 + b"]" * 900, "noise/own.yaml, line 1: nested deeper than 30 levels"),
         (b"position: ${oc.env:HOME}\n", "noise/own.yaml, line 1: '${oc.env:HOME}' calls a function"),

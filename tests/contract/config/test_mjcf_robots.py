@@ -115,8 +115,8 @@ def test_each_key_takes_its_format(problem, mine):
     swapped = ("robot.mjcf=null", "robot.urdf=arm.xml")
     assert problem("robot=elbow", *swapped) == (f"robot.urdf: {mine}/robots/arm.xml is an MJCF; name it at robot.mjcf")
     assert problem("robot=elbow", "robot.mjcf=mini.urdf") == (
-        f"robot.mjcf: {robots_dir()}/mini.urdf is no MJCF: it begins with <robot>, not with <mujoco>; a URDF stands at "
-        "robot.urdf"
+        f"robot.mjcf: {robots_dir()}/mini.urdf is not an MJCF: it begins with <robot>, not with <mujoco>; a URDF "
+        "stands at robot.urdf"
     )
 
 
@@ -139,5 +139,5 @@ def test_bad_input_is_told_with_its_key(checked, overrides, told):
 def test_what_is_wrong_with_the_arm_is_told_of_the_mjcf(checked, mine):
     branches = '<body><joint name="b" axis="1 0 0"/><geom size="0.01 0.1"/></body><body name="fore"'
     written(mine, CHAIN.replace('<body name="fore"', branches), "robots/arm.xml")
-    with pytest.raises(ConfigError, match=r"robot\.mjcf: .*arm\.xml branches: b move beside q1, q2, q3"):
+    with pytest.raises(ConfigError, match=r"robot\.mjcf: .*arm\.xml branches: b move in addition to q1, q2, q3"):
         checked("robot=elbow")

@@ -38,7 +38,7 @@ def stranger(cli, tmp_path):
 
 @pytest.fixture
 def listening():
-    """A port of this machine at which nobody came, once the test has ended."""
+    """A port of this machine at which no client came, once the test has ended."""
     with socket.create_server(("127.0.0.1", 0)) as door:
         yield door.getsockname()[1]
         door.setblocking(False)

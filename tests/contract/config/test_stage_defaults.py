@@ -42,7 +42,7 @@ controller: {kind: whole_body}
 
 @pytest.fixture
 def mine(tmp_path, monkeypatch):
-    """A folder of one's own with short robots."""
+    """A user's folder with short robots."""
     monkeypatch.chdir(tmp_path)
     for name, text in (("plain", ONE_ARM), ("pair", TWO_ARMS)):
         (tmp_path / f"mine/robot/{name}.yaml").parent.mkdir(parents=True, exist_ok=True)

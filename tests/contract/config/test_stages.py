@@ -108,12 +108,13 @@ def test_the_tick_is_the_fastest_stage_s(checked_config):
         ),
         (
             "controller.period.macro=0.0105",
-            "controller.period.macro: 0.0105 s is no multiple of the fastest loop's, controller.period.mini with "
+            "controller.period.macro: 0.0105 s is not a multiple of the fastest loop's, controller.period.mini with "
             "0.001 s",
         ),
         (
             "controller.period.mini=0.004",
-            "controller.period.macro: 0.01 s is no multiple of the fastest loop's, controller.period.mini with 0.004 s",
+            "controller.period.macro: 0.01 s is not a multiple of the fastest loop's, controller.period.mini with "
+            "0.004 s",
         ),
         (
             "torque_limits.max.mini=[5,5]",
@@ -171,7 +172,7 @@ def test_stages_of_a_robot_that_has_one_are_refused(override, problem):
 
 @pytest.fixture
 def own_robot(tmp_path):
-    """Write a robot of one's own: the combined one with other stages."""
+    """Write a user's robot: the combined one with other stages."""
 
     def write(change):
         content = yaml.safe_load((conf_dir() / "robot" / "combined.yaml").read_text())

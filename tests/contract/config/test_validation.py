@@ -86,10 +86,10 @@ ABOVE_ZERO = "must be a number above 0, or a list of such numbers with one for e
         ("trajectory.start=[0,0,2.5]", "trajectory.start: [0.0, 0.0, 2.5] m is outside the workspace: 2.5 m from "),
         (
             "controller.period=0.0105 plant.step=0.001",
-            "controller.period: 0.0105 s is no multiple of plant.step, 0.001 s; set plant.step to the period divided "
-            "by a whole number, such as 0.00105",
+            "controller.period: 0.0105 s is not a multiple of plant.step, 0.001 s; set plant.step to the period "
+            "divided by a whole number, such as 0.00105",
         ),
-        ("plant.step=0.02", "controller.period: 0.01 s is no multiple of plant.step, 0.02 s; set plant.step to "),
+        ("plant.step=0.02", "controller.period: 0.01 s is not a multiple of plant.step, 0.02 s; set plant.step to "),
         ("plant.step=0", "plant.step: must be above 0; found 0"),
         ("gravity=-1", "gravity: must be 0 or more; found -1"),
     ],

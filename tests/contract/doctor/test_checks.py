@@ -275,7 +275,7 @@ def test_two_arms_are_refused_with_their_ends(examined):
 
 
 def test_no_arm(examined):
-    with pytest.raises(RunnerError, match="has no joint that moves: it is no arm"):
+    with pytest.raises(RunnerError, match="has no joint that moves: it is not an arm"):
         examined('<robot name="x"><link name="a"/></robot>')
     assert grades(examined(strangers.chain("arm", [("revolute", X)])))[0] == "refused"  # one joint
 

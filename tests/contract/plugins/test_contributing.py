@@ -1,4 +1,4 @@
-"""Robots and parts that somebody adds from outside the package, as the pages on additions describe them."""
+"""Robots and parts that a user adds from outside the package, as the pages on additions describe them."""
 
 import sys
 
@@ -303,7 +303,7 @@ def in_tmp(tmp_path, monkeypatch):
 
 @pytest.fixture
 def crane(in_tmp):
-    """A config folder of one's own with a robot."""
+    """A user's config folder with a robot."""
     folder = in_tmp / "mine"
     for name, text in (("robot/crane.yaml", ROBOT_YAML), ("robots/crane.urdf", URDF)):
         (folder / name).parent.mkdir(parents=True)
@@ -313,7 +313,7 @@ def crane(in_tmp):
 
 @pytest.fixture
 def workshop(in_tmp, monkeypatch):
-    """An installed distribution of one's own with a part of each kind, and a config folder that chooses them."""
+    """A user's installed distribution with a part of each kind, and a config folder that chooses them."""
     site = in_tmp / "site"
     for name, text in (
         ("workshop/__init__.py", ""),

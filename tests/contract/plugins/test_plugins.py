@@ -56,7 +56,7 @@ PLUGIN = ("--plugin", "controller=mine/spring.py")
 
 @pytest.fixture
 def mine(tmp_path, monkeypatch):
-    """A folder of one's own with a module and the config that chooses it, and no part named yet."""
+    """A user's folder with a module and the config that chooses it, and no part named yet."""
     monkeypatch.chdir(tmp_path)
     monkeypatch.delenv("RUNNER_PLUGINS", raising=False)
     monkeypatch.setattr(sys, "path", [*sys.path])
@@ -110,7 +110,7 @@ def test_the_source_of_a_plug_in_decides_about_the_runs_name(mine):
     )
 
     def name():
-        """Return the name in a new process: the source counts as it is when it is first used."""
+        """Return the name in a new process: the source counts as found at its first use."""
         return subprocess.run([sys.executable, "-c", script], capture_output=True, text=True, check=True).stdout
 
     first = name()
@@ -180,8 +180,8 @@ def test_a_sweep_takes_a_plug_in(mine):
         ),
         ("controler=mine/spring.py", r"did you mean controller\?"),
         ("controller=", r"must be GROUP=MODULE"),
-        ("controller=mine/sprung.py", r"no file mine/sprung.py"),
-        ("controller=mine.sprung", r"no module mine.sprung"),
+        ("controller=mine/absent.py", r"no file mine/absent.py"),
+        ("controller=mine.absent", r"no module mine.absent"),
         ("controller=json.py", r"Python has another module json, .*; rename yours"),
     ],
 )

@@ -3,9 +3,9 @@
 import numpy as np
 import pytest
 
+from runner.base import tables
 from runner.base.errors import RunnerError
 from runner.base.limits import Limit
-from runner.recordings import files
 from runner.recordings.columns_map import ColumnsMap, Factor, Signal
 from runner.recordings.recording import read_recording
 
@@ -36,6 +36,81 @@ def test_columns_become_si_and_others_are_not_read(tmp_path):
     assert found.duration == pytest.approx(0.198)
 
 
+def test_swapped_rows_are_sorted_and_repeated_ones_left_out_and_counted(tmp_path):
+    times = [*range(60), *range(61, 90), 60, 59, *range(90, 120)]
+    found = read_recording(write(tmp_path, rows(times)), said(), FACTORS)
+    assert found.t == pytest.approx(1e-3 * np.arange(120))
+    assert found.signals[Q1] == pytest.approx(np.arange(120))
+    assert found.notes == [
+        "2 times run back: the rows are sorted by time",
+        "1 rows repeat the time of the row before and are left out",
+    ]
+
+
+@pytest.mark.parametrize(("rounding", "period"), [(1.0, 2.5), (10.0, 4.0)])
+def test_rounded_times_are_those_of_even_rows(tmp_path, rounding, period):
+    exact = period * np.arange(400)
+    lines = [f"{t},{k}" for k, t in enumerate(np.round(exact / rounding) * rounding)]
+    found = read_recording(write(tmp_path, ["t,a", *lines]), said(), FACTORS)
+    assert found.period == pytest.approx(1e-3 * period, rel=1e-3)
+    assert found.t == pytest.approx(1e-3 * exact, abs=1e-3 * rounding / 2)
+    assert f"times are rounded to {rounding:g} ms" in found.notes[0]
+
+
+def test_jitter_is_no_gap(tmp_path):
+    times = np.cumsum(np.random.default_rng(0).choice([1.0, 2.0, 3.0, 14.0], 200, p=[0.2, 0.6, 0.15, 0.05]))
+    assert len(read_recording(write(tmp_path, rows(times)), said(), FACTORS).t) == 200
+
+
+def test_rows_that_repeat_the_one_before_are_left_out(tmp_path):
+    values = np.sin(0.01 * np.arange(200))
+    values[10::5] = values[9::5][: len(values[10::5])]
+    found = read_recording(
+        write(tmp_path, ["t,a", *(f"{t},{value}" for t, value in enumerate(values))]), said(), FACTORS
+    )
+    assert found.signals[Q1] == pytest.approx(2.0 * np.sin(10.0 * found.t))
+    assert found.notes == ["38 rows repeat the positions of the row before, in motion, and are left out"]
+
+
+def keyed(**keys):
+    return ColumnsMap(rate=100.0, columns={"a": {"joint": "q1", **keys}})
+
+
+@pytest.mark.parametrize(
+    ("keys", "factor", "values", "wanted"),
+    [
+        ({"unit": "rad", "sign": -1, "zero": 3.0}, -2.0, [3.0, 4.0], [0.0, -2.0]),
+        ({"unit": "%", "scale": 50.0}, 0.5, [1.0, -100.0], [0.5, -50.0]),
+    ],
+)
+def test_sign_zero_and_per_cent(tmp_path, keys, factor, values, wanted):
+    path = write(tmp_path, ["a", *map(str, values * 30)])
+    found = read_recording(path, keyed(**keys), {"a": Factor(factor, "rad")}).signals[Q1]
+    assert found[:2] == pytest.approx(wanted)
+
+
+@pytest.mark.parametrize(("keys", "turn"), [({"unit": "deg"}, 360.0), ({"unit": "deg", "wrap": 100.0}, 100.0)])
+def test_a_column_that_starts_again_goes_on(tmp_path, keys, turn):
+    degrees = 5.0 * np.arange(100)
+    path = write(tmp_path, ["a", *map(str, (degrees + turn / 2) % turn - turn / 2)])
+    found = read_recording(path, keyed(**keys), {"a": Factor(np.pi / 180.0, "rad")})
+    assert found.signals[Q1] == pytest.approx(np.radians(degrees))
+    assert found.notes == [f"a jumps by a turn {int((495.0 + turn / 2) // turn)} times: the jumps are removed"]
+
+
+def test_coupled_joints(tmp_path):
+    said = ColumnsMap(
+        rate=100.0,
+        columns={
+            "J2": {"joint": "q2", "unit": "rad"},
+            "J3": {"joint": "q3", "unit": "rad", "coupling": {"q2": 1.0}},
+        },
+    )
+    path = write(tmp_path, ["J2,J3", *["0.25,0.5"] * 60])
+    found = read_recording(path, said, {"J2": Factor(1.0, "rad"), "J3": Factor(1.0, "rad")})
+    assert found.signals[Signal("position", "q3")] == pytest.approx(np.full(60, 0.75))
+
+
 def test_rows_at_a_rate(tmp_path):
     found = read_recording(write(tmp_path, rows(range(60))), said(rate=50.0, time=False), FACTORS)
     assert found.t == pytest.approx(np.arange(60) * 0.02)
@@ -59,9 +134,10 @@ def test_time_that_jitters_is_taken(tmp_path):
             None,
             r"line 62: rows are missing for 0.021 s, where rows are 0.001 s apart; `--fill-gaps 21ms` fills",
         ),
-        ([*range(30), "", *range(31, 60)], None, r"line 32: the time is nan s after 0.029 s; time must increase"),
-        ([*range(60), 59, *range(60, 90)], None, r"line 62: the time is 0.059 s after 0.059 s; time must increase"),
-        ([*range(60), 30, *range(60, 90)], None, r"line 62: the time is 0.03 s after 0.059 s; time must increase"),
+        ([*range(30), "", *range(31, 60)], None, r"line 32: the time is missing, in 1 of 60 rows"),
+        ([*range(2000), *range(60)], None, r"line 2002: the time is 0 s after 1.999 s, and runs back in 1 rows; cut"),
+        ([*range(60), *range(59, 0, -1)], None, r"the time is 0.058 s after 0.059 s, and runs back in 58 rows; cut"),
+        ([k // 4 for k in range(80)] + [100], None, r"has 21 values in 81 rows; say rate: instead of time:"),
         (range(100), 500.0, r"its rows come at 1000 Hz by the column of time in ms, and rate says 500 Hz"),
         (range(49), None, r"too short: 49 rows; needed: 50 or more"),
     ],
@@ -79,13 +155,13 @@ def test_times_that_do_not_fit(tmp_path, times, rate, wanted):
             ["time,a_1", "0,1"],
             r"has no column 't' \(did you mean time\?\)|'t', 'a' \(did you mean a_1\?\); its columns: time, a_1",
         ),
-        (["t,a,a", "0,1,2"], r"line 1 has the column 'a' more than once"),
+        (["t,a,a", "0,1,2"], r"has the column 'a' more than once"),
         (
             ["t,a", "0,1", "1", "2,x", "3,inf"],
             r"line 3: 1 cells for 2 columns; line 4: a is 'x'.*line 5: a is 'inf'; needed: a finite number",
         ),
         (["t,a", *["0,-"] * 8], r"line 6: a is '-'; needed: a finite number; 3 more problems like these"),
-        ([], r"has no column 't', 'a'; its columns: none"),
+        ([], r"is empty. Allowed: a log with rows of numbers."),
     ],
 )
 def test_cells_that_do_not_fit(tmp_path, lines, wanted):
@@ -100,9 +176,9 @@ def test_a_file_that_is_not_there(tmp_path):
 
 def test_rows_are_counted_while_they_are_read(tmp_path, monkeypatch):
     path = write(tmp_path, rows(range(60)))
-    monkeypatch.setattr(files, "RECORDING_ROWS", Limit(61, "rows"))
+    monkeypatch.setattr(tables, "RECORDING_ROWS", Limit(61, "rows"))
     assert len(read_recording(path, said(), FACTORS).t) == 60
-    monkeypatch.setattr(files, "RECORDING_ROWS", Limit(60, "rows"))
+    monkeypatch.setattr(tables, "RECORDING_ROWS", Limit(60, "rows"))
     with pytest.raises(RunnerError, match=r"cannot read .*recording.csv: it has 61 rows; allowed: up to 60"):
         read_recording(path, said(), FACTORS)
 
@@ -117,14 +193,16 @@ def test_a_recording_of_a_terabyte_is_not_read(tmp_path):
     path = write(tmp_path, rows(range(60)))
     with path.open("r+b") as file:
         file.truncate(10**12)
-    with pytest.raises(RunnerError, match="has 1,000,000,000,000 bytes; allowed: up to 100,000,000"):
+    with pytest.raises(RunnerError, match="has 1,000,000,000,000 bytes; allowed: up to 400,000,000"):
         read_recording(path, said(), FACTORS)
 
 
 def test_problems_beyond_the_first_are_counted_and_empty_lines_at_the_end_are_none(tmp_path):
     assert len(read_recording(write(tmp_path, [*rows(range(60)), "", ",,"]), said(), FACTORS).t) == 60
-    with pytest.raises(RunnerError, match=r"line 62: 0 cells for 3 columns; line 63: t is '-'"):
-        read_recording(write(tmp_path, [*rows(range(60)), "", "x,-,1", ""]), said(), FACTORS)
+    with pytest.raises(
+        RunnerError, match=r"line 63: t is '-'; needed: a finite number; line 64: 2 cells for 3 columns"
+    ):
+        read_recording(write(tmp_path, [*rows(range(60)), "", "x,-,1", "x,1", "x,3,4"]), said(), FACTORS)
 
 
 @pytest.mark.parametrize(("separator", "point"), [(";", ","), (";", "."), ("\t", ","), (",", ".")])
@@ -147,30 +225,41 @@ def test_stamps_count_from_the_first_row_and_torques_from_the_middle_of_theirs(t
 
 
 def test_gaps_are_filled_up_to_what_is_asked_for(tmp_path):
-    times = [t for t in range(100) if not 40 <= t < 44]
-    lines = ["t,a", *(f"{t},{'NaN' if t in (20, 21) else np.sin(0.05 * t)}" for t in times)]
-    found = read_recording(write(tmp_path, lines), said(), FACTORS, fill_gaps=0.005)
-    assert found.filled == pytest.approx([0.005, 0.003])
-    assert found.signals[Q1] == pytest.approx(2.0 * np.sin(0.05 * np.array(times)), abs=1e-5)
-    with pytest.raises(RunnerError, match=r"line 42: rows are missing for 0.005 s.*`--fill-gaps 5ms` fills"):
-        read_recording(write(tmp_path, lines), said(), FACTORS, fill_gaps=0.004)
-    without = write(tmp_path, ["t,a", *(f"{t},{'' if 20 <= t < 25 else t}" for t in range(60))])
-    for fill_gaps in (0.0, 0.004):
-        with pytest.raises(RunnerError, match=r"line 22: a is missing for 0.006 s, .*; `--fill-gaps 6ms` fills"):
-            read_recording(without, said(), FACTORS, fill_gaps)
+    times = [t for t in range(200) if not 40 <= t < 64]
+    lines = ["t,a", *(f"{t},{np.sin(0.05 * t)}" for t in times)]
+    found = read_recording(write(tmp_path, lines), said(), FACTORS, fill_gaps=0.025)
+    assert found.filled == pytest.approx([0.025])
+    with pytest.raises(RunnerError, match=r"line 42: rows are missing for 0.025 s.*`--fill-gaps 25ms` fills"):
+        read_recording(write(tmp_path, lines), said(), FACTORS, fill_gaps=0.024)
 
 
-@pytest.mark.parametrize(
-    ("gone", "wanted"),
-    [
-        (range(5), "line 2: a is missing, in 5 of 60 rows and at an end"),
-        (range(60), "line 2: a is missing, in 60 of 60 rows and at an end; leave"),
-    ],
+TWO = ColumnsMap(
+    time={"column": "t", "unit": "ms"},
+    columns={"a": {"joint": "q1", "unit": "rad"}, "b": {"joint": "q2", "unit": "rad"}},
 )
-def test_gaps_at_an_end_and_empty_columns_are_not_filled(tmp_path, gone, wanted):
-    lines = ["t,a", *(f"{t},{'' if t in gone else t}" for t in range(60))]
-    with pytest.raises(RunnerError, match=wanted):
-        read_recording(write(tmp_path, lines), said(), FACTORS, fill_gaps=0.02)
+
+
+def write_two(tmp_path, gone, other="1"):
+    return write(tmp_path, ["t,a,b", *(f"{t},{'' if t in gone else t / 10},{other}" for t in range(60))])
+
+
+def test_cells_of_one_column_are_filled_and_rows_without_any_are_left_out(tmp_path):
+    factors = {**FACTORS, "b": Factor(1.0, "rad")}
+    path = write_two(tmp_path, range(20, 25))
+    with pytest.raises(RunnerError, match=r"line 22: a is missing for 0.006 s, .*; `--fill-gaps 6ms` fills"):
+        read_recording(path, TWO, factors, 0.004)
+    found = read_recording(path, TWO, factors, 0.006)
+    assert found.filled == pytest.approx([0.006])
+    assert found.signals[Q1] == pytest.approx(0.2 * np.arange(60))
+    rest = read_recording(write_two(tmp_path, range(5), ""), said(), FACTORS)
+    assert len(rest.t) == 55
+    assert rest.notes == ["5 rows without any of the columns are left out"]
+
+
+@pytest.mark.parametrize("gone", [range(5), range(55, 60)])
+def test_gaps_at_an_end_are_not_filled(tmp_path, gone):
+    with pytest.raises(RunnerError, match=rf"line {gone[0] + 2}: a is missing, in 5 of 60 rows and at an end; leave"):
+        read_recording(write_two(tmp_path, gone), TWO, {**FACTORS, "b": Factor(1.0, "rad")}, fill_gaps=0.02)
 
 
 @pytest.mark.parametrize(("cell", "told"), [("1e18", "2e\\+18"), ("-1e308", "-inf"), ("6e11", "1.2e\\+12")])
@@ -182,7 +271,7 @@ def test_numbers_beyond_all_arms_are_refused(tmp_path, cell, told):
 
 def test_what_is_for_bags_or_fills_too_much_is_refused(tmp_path):
     path = write(tmp_path, rows(range(60)))
-    with pytest.raises(RunnerError, match=r"topic: is for ROS bags \(.bag, .mcap, .db3\)"):
+    with pytest.raises(RunnerError, match=r"topic: is for ROS bags. Allowed: null"):
         read_recording(path, said().model_copy(update={"topic": "/joint_states"}), FACTORS)
     with pytest.raises(RunnerError, match=r"gaps of up to 0.1 s can be filled; found 0.2 s"):
         read_recording(path, said(), FACTORS, fill_gaps=0.2)

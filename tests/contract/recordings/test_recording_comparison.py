@@ -4,7 +4,9 @@ import numpy as np
 import pytest
 
 from runner.base.errors import RunnerError
+from runner.recordings.columns_map import Signal
 from runner.recordings.compare import compare_recording
+from runner.recordings.setting import setting_of
 from runner.recordings.words import aligned_text
 from runner.sweeps.job import run
 
@@ -18,7 +20,7 @@ def stored(tmp_path_factory):
     return run(
         "robot=macro", "controller=computed_torque", "trajectory=joint_quintic", "plant=rk4", "duration=1.5",
         "trajectory.duration=1.0",
-        "trajectory.goal_configuration=[0.8,-0.5,0.6]", "controller.period=0.002",
+        "trajectory.goal_configuration=[0.8,-0.5,0.6]", "controller.period=0.002", "robot.armature=[0.5,0.4,0.2]",
         f"outputs={tmp_path_factory.mktemp('outputs')}",
     )  # fmt: skip
 
@@ -71,10 +73,47 @@ def test_what_is_not_recorded_is_in_no_metric(compared):
 
 
 def test_the_words_have_the_filled_gaps(compared):
-    gone = [*range(100, 105), *range(300, 303)]
-    found = compared(JOINTS, change=lambda frame: frame.drop(frame.index[gone]), fill_gaps=0.02)
-    assert aligned_text(found).endswith("; 2 gaps of up to 12 ms are filled")
+    gone = [*range(100, 112), *range(300, 303)]
+    found = compared(JOINTS, change=lambda frame: frame.drop(frame.index[gone]), fill_gaps=0.03)
+    assert aligned_text(found).endswith("; 1 gap of up to 26 ms is filled")
     assert "filled" not in aligned_text(compared(JOINTS))
+
+
+def keyed(keys):
+    return ", ".join(f"c{j}: {{torque: q{j}, unit: N m, {keys}}}" for j in (1, 2, 3))
+
+
+def test_torques_without_gravity_are_compared_without_it(stored, compared):
+    model = setting_of(stored).config.arm.model
+
+    def without(frame):
+        gravity = np.array([model.gravity_torque(q) for q in frame[["a1", "a2", "a3"]].to_numpy()])
+        assert np.abs(gravity).max() > 1.0
+        return frame.assign(**{f"c{j + 1}": frame[f"c{j + 1}"] - gravity[:, j] for j in range(3)})
+
+    found = compared(f"{JOINTS}, {keyed('holds: without_gravity')}", change=without)
+    for one in found.residuals:
+        assert one.largest == pytest.approx(0.0, abs=1e-3 * max(1.0, np.abs(one.simulated).max()))
+    assert not {"peak_torque", "energy"} & set(found.metrics)
+
+
+def test_sensors_behind_the_gears_feel_no_rotor(stored, compared):
+    setting = setting_of(stored)
+    model = setting.config.arm.model
+    on_links = setting.torques("torque", "link")
+    ddq = np.gradient(setting.trace.dq, setting.trace.t, axis=0)
+    differences = setting.trace.tau - on_links - model.armature * ddq
+    assert np.abs(model.armature * ddq).max() > 0.01
+    assert np.sqrt(np.mean(differences[10:-10] ** 2)) < 0.05 * np.sqrt(np.mean((model.armature * ddq) ** 2))
+    found = compared(f"{JOINTS}, {keyed('side: link')}")
+    assert [one.simulated for one in found.residuals if one.signal.kind == "torque"][1] == pytest.approx(on_links[:, 1])
+
+
+def test_commanded_positions_are_read_and_not_compared(compared):
+    commanded = "a1: {joint: q1, unit: rad}, a2: {joint: q2, unit: rad}, a3: {reference: q3, unit: rad}"
+    found = compared(commanded)
+    assert [one.signal.words for one in found.residuals] == ["position of q1", "position of q2"]
+    assert Signal("reference", "q3") in found.recording.signals
 
 
 def test_a_part_of_a_run(compared):
@@ -88,7 +127,7 @@ def test_a_part_of_a_run(compared):
     [
         (JOINTS, lambda frame: frame.assign(a2=frame.a2 * 57.29578), "columns.a2: .* looks like deg: say unit: deg"),
         (JOINTS.replace("rad", "deg"), lambda frame: frame, "columns.a1: .* looks like rad: say unit: rad"),
-        (f"{JOINTS}, {TIP}", lambda frame: frame.assign(z=frame.z * 1e3), "columns.z: .* looks like mm: say unit: mm"),
+        (f"{JOINTS}, {TIP}", lambda frame: frame.assign(z=frame.z * 1e3), "columns.z: fits if it is in mm; "),
         (TORQUES, lambda frame: frame, "columns: needs the position of a joint, or a coordinate of the tip"),
         (JOINTS, lambda frame: frame.iloc[:120], "too short: it lasts 0.238 s, and the run 1.5 s"),
     ],

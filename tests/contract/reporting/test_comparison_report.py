@@ -42,16 +42,16 @@ def test_the_report_is_as_recorded(document, as_recorded):
 
 
 def test_the_first_screen_says_what_differs_how_many_cells_match_and_by_how_much(document):
-    assert document.title == "2 sweeps compared"
-    assert document.abstract.startswith("A and B differ only in noise.position: 0.001 against 0.0001.")
+    assert document.title == "Which noise.position: 0.001 (A) or 0.0001 (B)?"
+    assert "\nA and B differ only in noise.position: 0.001 against 0.0001.\n" in document.abstract
+    assert [[cell.text for cell in cells] for _, cells in document.map.rows] == [["A -2.5 %"] * 2] * 2
     assert "draw only noise" in document.abstract
     cells, differ, first = document.key_numbers
     assert cells[:2] == ("cells in both", "4")
     assert differ[1:] == ("1 value", "noise.position")
-    assert first[:2] == ("rms tracking error, B - A", "0.250 m")
+    assert first[:2] == ("rms tracking error, B - A", "0.25 m")
     assert "8 pairs: larger" in first[2]
-    assert "% larger with B (" in document.abstract
-    assert "by 0.25 m (" in document.abstract
+    assert document.abstract.startswith("Rms tracking error: 2.5 % smaller with A than with B (10.01 m): by 0.25 m in")
 
 
 def test_a_confounded_comparison_is_marked_before_any_number(document):
@@ -74,7 +74,7 @@ def test_every_metric_stands_in_a_table_and_parts_of_it_folded(document):
     assert parts_.folded
     assert [row[0] for row in parts_.rows] == ["largest torque, joint 1"]
     text = next(block.text for block in parts(document.sections, Text) if "signed-rank" in block.text)
-    assert "p is corrected within the family (Holm)" in text
+    assert "corrected for all comparisons of a metric" in text
 
 
 def test_each_cell_stands_in_the_figure_with_its_interval(document):
@@ -112,7 +112,7 @@ def test_more_than_two_sweeps_are_held_against_the_first():
     third = side("C", LAWS, error, noise={"position": 1e-2})
     document = comparison_document([*pair(noise={"position": 1e-4}), third])
     titles = [section.title for section in document.sections]
-    assert titles == ["The sweeps", "B against A", "C against A", "Caveats", "Provenance"]
+    assert titles == ["B against A", "C against A", "The sweeps", "Caveats", "Provenance"]
 
 
 def test_caveats_of_both_and_the_commands_are_shown():

@@ -8,11 +8,12 @@ import yaml
 from fixtures.stored import RUNS
 from support.engines import ASKED
 
-from runner.base.quantities import quantity
+from runner.base.quantities import quantity, with_powers
 from runner.reporting import outline
 from runner.reporting.comparison.runs import runs_document
 from runner.reporting.document import Code, Curves, Notice, Playback, Provenance, Table, Text
 from runner.reporting.formulas import faulty
+from runner.reporting.limiting_joint import nearest_to_limit
 from runner.reporting.metric_titles import title
 from runner.reporting.render import write_report
 from runner.reporting.run_report import provenance, run_document
@@ -116,7 +117,11 @@ def test_a_failed_run_shows_its_last_moments_on_axes_that_its_divergence_leaves(
 
 def test_a_failed_run_says_when_and_where(diverged):
     document = run_document(diverged)
-    assert document.abstract.startswith(f"The run {diverged.failure}.")
+    assert document.abstract.startswith(f"The run {with_powers(diverged.failure)}.")
+    assert "1e+06" not in document.abstract
+    assert "Its velocity loop is unstable: the gain is 1.8 times too large for the period." in document.abstract
+    assert "controller.natural_frequency below 16.7 or controller.period below 0.0333." in document.abstract
+    assert not [block for block in blocks_of(document, Curves) if "Desired motion" in block.caption]
     (notice,) = [block for block in blocks_of(document, Notice) if block.kind == "failure"]
     time, joint = diverged.failure_record["time"], diverged.failure_record["joint"]
     assert 0.0 < time < 4.0
@@ -127,7 +132,7 @@ def test_a_failed_run_says_when_and_where(diverged):
 def test_runs_stand_side_by_side(finished, diverged, tmp_path):
     other = run(*RUNS["quintic"], "seed=1", f"outputs={tmp_path}")
     document = runs_document([finished, other, diverged])
-    assert document.abstract.startswith(f"C {diverged.failure}.")
+    assert document.abstract.startswith(f"C {with_powers(diverged.failure)}.")
     assert "A and B: not compared in pairs: seed 0 and seed 1 share no noise." in document.abstract
     metrics, differing = blocks_of(document, Table)[:2]
     assert metrics.lines[0] == ["metric", "A", "B", "C"]
@@ -146,8 +151,24 @@ def test_two_runs_show_their_difference_and_the_answer(tmp_path):
                 f"outputs={tmp_path}") for ratio in (1.0, 0.5)]  # fmt: skip
     document = runs_document(runs)
     assert "A and B differ only in controller.damping_ratio: 1 against 0.5." in document.abstract
-    assert "(6 pairs" in document.abstract or ", 6 pairs)" in document.abstract
-    assert blocks_of(document, Table)[0].lines[0] == ["metric", "A", "B", "B - A"]
+    assert ", 6 pairs" in document.abstract
+    assert document.title.startswith("Which controller.damping_ratio: 1 (A) or 0.5 (B)?")
+    short, medians = blocks_of(document, Table)[:2]
+    assert short.lines[0] == ["metric", "A", "B - A", "answer"]
+    assert medians.lines[0] == ["metric", "A", "B"]  # the difference has one estimate
+
+
+def test_the_joint_nearest_to_its_torque_limit_is_told(tmp_path):
+    limited = run("robot=macro", "trajectory=quintic", "duration=0.3", "torque_limits.max=[1e3,400,1e3]",
+                  f"outputs={tmp_path}")  # fmt: skip
+    what, share, when = nearest_to_limit(limited)
+    torques = np.abs(limited.joints("tau")[:-1]) / [1e3, 400.0, 1e3]
+    row, joint = np.unravel_index(torques.argmax(), torques.shape)
+    assert (what, share) == ("nearest to a torque limit", f"q{joint + 1}: {100.0 * torques.max():.2g} %")
+    assert when.startswith(f"at {quantity(limited.t[row], 's', 2)}")
+    assert run_document(limited).key_numbers[-1] == (what, share, when)
+    free = run("robot=macro", "duration=0.05", f"outputs={tmp_path}")
+    assert nearest_to_limit(free) is None
 
 
 def test_every_kind_of_report_is_written_as_html_and_pdf(finished, diverged, tmp_path):

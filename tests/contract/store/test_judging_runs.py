@@ -36,7 +36,7 @@ def test_another_spec_is_worked_out_from_the_stored_values(tmp_path, median, cap
     made = run(*SHORT, f"outputs={tmp_path}")
     trace = (made.folder / "trace.parquet").stat().st_mtime_ns
     found = run(*SHORT, f"outputs={tmp_path}", f"spec.metrics.{METRIC}.max={median!r}")
-    assert "stored before without a spec; the shares are worked out from its stored values" in capsys.readouterr().err
+    assert "stored before without a spec; the shares are computed from its stored values" in capsys.readouterr().err
     assert (made.spec, found.spec.whole.kept) == (None, 6)
     assert found.folder == made.folder
     again = open_run(made.folder)  # its digests are right, and all else is as it was

@@ -1,4 +1,4 @@
-"""Runs of so many repetitions that their values are stored next to the record."""
+"""Runs with enough repetitions that their values are stored next to the record."""
 
 import json
 import shutil
@@ -15,7 +15,7 @@ from runner.sweeps.job import run
 from runner.sweeps.measurements import measure_sweep
 from runner.symbolic.engine import evaluator
 
-pytestmark = pytest.mark.skipif(not evaluator(), reason="so many repetitions are compiled as a whole by llvmlite")
+pytestmark = pytest.mark.skipif(not evaluator(), reason="this many repetitions are compiled as a whole by llvmlite")
 MANY = MOST_LISTED + 1
 SHORT = ("robot=macro", "plant=rk4", "trajectory=goal", "noise=thesis", "duration=0.05")
 

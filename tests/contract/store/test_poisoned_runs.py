@@ -1,4 +1,4 @@
-"""Runs that somebody else forged, digests included: too much is refused, and no text of theirs is more than text."""
+"""Runs that another user forged, digests included: too much is refused, and no text of theirs is more than text."""
 
 import csv
 import itertools

@@ -78,5 +78,5 @@ def test_a_run_that_is_found_again_is_judged_by_its_lines_spec(cli, simulated):
     first = cli(*line)
     assert len(simulated) == 1
     assert "1 of 1" in other.err
-    assert "stored before with another spec; the shares are worked out from its stored values" in first.err
+    assert "stored before with another spec; the shares are computed from its stored values" in first.err
     assert "0 of 1" in first.err

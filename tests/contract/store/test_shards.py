@@ -143,12 +143,12 @@ def test_a_shard_of_another_schema_is_refused(tmp_path, monkeypatch):
 @pytest.mark.parametrize("record", ["{", "[" * 100_000])
 def test_a_row_that_is_no_run_is_named(tmp_path, record):
     row = ShardRow(Outcome("a", "", False), "{}", "<robot/>", record, (), np.zeros((0, 0)))
-    with pytest.raises(DamagedError, match=r"\.parquet: row 0 is no run: "):
+    with pytest.raises(DamagedError, match=r"\.parquet: row 0 is not a run: "):
         open_row(write_shard(tmp_path, "s", [row]), 0)
 
 
 def test_a_metric_without_its_column_is_named(tmp_path, monkeypatch):
     path = write_shard(tmp_path, "s", [make(tmp_path, "a")])
     monkeypatch.setattr(shards, "METRIC", "another ")
-    with pytest.raises(DamagedError, match=r"row 0 is no run: .*another energy"):
+    with pytest.raises(DamagedError, match=r"row 0 is not a run: .*another energy"):
         open_row(path, 0)

@@ -177,7 +177,7 @@ def test_a_record_that_somebody_made_up_is_told_though_its_digests_are_right(cli
     (run.folder / "metrics.json").write_bytes(sealed_json(made_up))
     ending = cli("report", run.folder)
     assert (ending.code, ending.out) == (2, "")
-    assert f"metrics.json: it is no run's record: {found}" in ending.err
+    assert f"metrics.json: it is not a run's record: {found}" in ending.err
     assert ending.err.endswith("; run it again to repair it\n")
 
 

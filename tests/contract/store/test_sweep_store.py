@@ -32,7 +32,7 @@ def test_a_run_opens_as_a_list_of_one(sweep):
 def test_folders_tell_what_they_are(sweep, tmp_path):
     run = next(open_sweep(sweep).runs()).folder
     assert [type(open_stored(folder)) for folder in (sweep, run)] == [Sweep, Run]
-    with pytest.raises(StoreError, match="is no stored run: it has no metrics"):
+    with pytest.raises(StoreError, match="is not a stored run: it has no metrics"):
         open_stored(tmp_path)
 
 
@@ -55,10 +55,10 @@ def test_the_same_jobs_are_the_same_sweep(tmp_path):
         (b"[]", "sweep.json: it is damaged: it names no schema"),
         (b'{"schema": 2, "jobs": []}', "it has schema 2, and this version reads schema 3; make it again in another"),
         (b'{"schema": 3, "jobs": []}', "its content has another digest than it says"),
-        (sealed_json({}), "it is no sweep's: it needs jobs with overrides and run each"),
-        (sealed_json({"jobs": [{"overrides": []}]}), "it is no sweep's"),
-        (sealed_json({"jobs": [{"overrides": [3], "run": "a"}]}), "it is no sweep's"),
-        (sealed_json({"jobs": 3}), "it is no sweep's"),
+        (sealed_json({}), "it is not a sweep's: it needs jobs with overrides and run each"),
+        (sealed_json({"jobs": [{"overrides": []}]}), "it is not a sweep's"),
+        (sealed_json({"jobs": [{"overrides": [3], "run": "a"}]}), "it is not a sweep's"),
+        (sealed_json({"jobs": 3}), "it is not a sweep's"),
         (sealed_json({"jobs": [{"overrides": ["a=1"], "run": "a"}]}), "it is of another sweep than its folder is"),
     ],
 )
@@ -76,7 +76,7 @@ def test_a_missing_run_of_a_sweep_is_named(sweep):
 
 
 def test_a_folder_that_is_no_sweep(tmp_path):
-    with pytest.raises(StoreError, match=r"is no sweep: it has no sweep.json; `runner -m OVERRIDES` makes one"):
+    with pytest.raises(StoreError, match=r"is not a sweep: it has no sweep.json; `runner -m OVERRIDES` makes one"):
         open_sweep(tmp_path)
 
 

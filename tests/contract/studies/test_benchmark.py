@@ -7,7 +7,7 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 from scipy.stats import spearmanr
-from support.benchmark_runs import LAWS, SCATTER, SEEDS, SIZES, TUNINGS, benchmark_runs
+from support.benchmark_runs import COLUMNS, SCATTER, SEEDS, SIZES, TUNINGS, benchmark_runs
 from support.made_up_runs import planned
 from support.recorded_runs import recorded
 from support.study_plans import FULL_ALONE
@@ -240,9 +240,10 @@ def test_every_arm_and_law_of_ours_has_its_section_and_words(made, whole):
     arms, tuning = (made("benchmark").chapters.section(file) for file in ("by_arm.md", "how_tuned.md"))
     assert [each.title for each in arms.sections] == ["Macro", "Planar arm", "xArm7", "Panda"]
     laws = next(block for block in tuning.blocks if isinstance(block, Table))
-    assert [row[0] for row in laws.rows] == [*map(in_words, LAWS), "iterative learning"]
+    assert [row[0] for row in laws.rows] == [*map(in_words, SIZES), "iterative learning"]
     assert not {"A law from outside.", "not known here"} & set(texts(tuning))
     assert all(row[-1].endswith(" ms") for row in laws.rows[:-1])
+    assert {name.split("/")[2] for name in whole if name.startswith("first/")} == set(SIZES)
     assert {name.split("/")[1] for name in whole if name.startswith("first/")} == set(ARMS)
     assert {name.split("/")[4] for name in whole if name.startswith("first/")} == set(CONDITIONS)
 
@@ -253,7 +254,7 @@ def test_gains_of_every_tuning_are_listed_where_they_differ(runs):
         "not tuned", "first, 1", "first, 2", "learned, 1", "learned, 2"
     ]  # fmt: skip
     for arm, law, key, *own in table.rows:
-        level = next(name for name in LAWS if in_words(name) == law)
+        level = next(name for name in SIZES if in_words(name) == law)
         place = next(name for name in ARMS if ARMS[name] == arm)
         assert own[0] == quantities.number(float(keys_of(runs, place, level, "first", "untuned")[key]))
 
@@ -274,9 +275,9 @@ def test_the_orders_on_two_plants_are_held_against_each_other(runs):
         for plan, arm, law, *rest in [name.split("/")]
     }
     assert engines.against(STUDY.results(swapped)).value >= 5.0  # joint PD far behind, far ahead, under each condition
-    order = [LAWS.index(of.get(law, law)) for law in LAWS]
-    judged = [SIZES[condition] for condition in ("exact", "masses", "friction", "encoders", "all")]
-    expected = [spearmanr(sizes, np.array(sizes)[order]).statistic for sizes in judged]
+    sizes, others = (np.array([SIZES[law] for law in laws]).T for laws in (SIZES, [of.get(law, law) for law in SIZES]))
+    judged = [COLUMNS.index(condition) for condition in ("exact", "masses", "friction", "encoders", "all")]
+    expected = [spearmanr(sizes[column], others[column]).statistic for column in judged]
     assert engines.mean_correlation(STUDY.results(swapped)).value == pytest.approx(np.mean(expected), abs=0.02)
 
 

@@ -30,7 +30,7 @@ FILES = {
 
 @pytest.fixture
 def mine(tmp_path, monkeypatch):
-    """A folder with a law of one's own and its config, and a study that takes such, with no part named yet."""
+    """A folder with a user's law and its config, and a study that takes such, with no part named yet."""
     monkeypatch.setenv("RUNNER_PLUGINS", "")
     monkeypatch.setattr(sys, "path", [*sys.path])
     (tmp_path / "mine" / "controller").mkdir(parents=True)
@@ -118,4 +118,4 @@ def test_a_law_without_its_config_is_told_where_that_belongs(cli, mine):
     (mine / "controller" / f"{LAW}.yaml").unlink()
     ending = cli("reproduce", "paper", "--plugin", f"controller=mine/{LAW}.py")
     assert ending.code == 2
-    assert f"no config beside it, {mine.resolve()}/controller/gravity_pd.yaml" in ending.err
+    assert f"no config next to it, {mine.resolve()}/controller/gravity_pd.yaml" in ending.err

@@ -53,7 +53,7 @@ entries:
 
 @pytest.fixture
 def paper(tmp_path):
-    """A folder of somebody's: a URDF, one YAML file."""
+    """A user's folder: a URDF, one YAML file."""
 
     def write(text=PAPER):
         (tmp_path / "equations").mkdir(exist_ok=True)

@@ -143,9 +143,9 @@ LIMITED = TORQUES.replace(
 """,
     """            return self.limits
         def with_limits(self, limits):
-            told = Law(self.robot)
-            told.limits = limits
-            return told
+            law = Law(self.robot)
+            law.limits = limits
+            return law
 """,
 )
 
@@ -158,7 +158,7 @@ def test_a_law_that_wants_its_torque_limits_is_told_them(own_part, cli):
 
 
 def test_a_law_that_raises_at_its_torque_limits_is_refused(own_part, cli):
-    own = law(own_part, "limit_refuser", LIMITED.replace("told.limits = limits", "1 / 0"))
+    own = law(own_part, "limit_refuser", LIMITED.replace("law.limits = limits", "1 / 0"))
     ending = cli("--config-dir", own, "robot=macro", "controller=limit_refuser", *QUINTIC)
     assert ending.code == 2
     assert "ZeroDivisionError" in ending.err

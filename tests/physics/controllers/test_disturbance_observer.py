@@ -157,7 +157,7 @@ REFUSED = {
     "robot=combined controller=macro_mini plant.dynamics=decoupled": "take plant.dynamics=coupled",
     "robot=combined controller=whole_body plant.dynamics=decoupled": "take plant.dynamics=coupled",
     "controller.period=0.002 plant.step=0.001 controller=macro_mini robot=combined "
-    "controller.period={macro: 0.01, mini: 0.001} plant.computation.delay=3": "no multiple",
+    "controller.period={macro: 0.01, mini: 0.001} plant.computation.delay=3": "not a multiple",
     "robot=macro disturbance_observer.bandwidth={mini: 3}": "no such loop",
     "robot=macro disturbance_observer.bandwidth=-1": "above 0",
 }

@@ -174,7 +174,7 @@ def test_the_full_reference_velocity_is_that_of_the_target(spied, wrist_rotation
         difference = (targets[2][0] - targets[0][0]) / (2.0 * h)
         np.testing.assert_allclose(targets[1][1], difference, atol=1e-7)
         velocities.append(np.abs(difference).max())
-        # And as it is written: R^T (xd_d - xd_E - w x (x_d - x_E)).
+        # And as written: R^T (xd_d - xd_E - w x (x_d - x_E)).
         J = arm.stages[0].model.tip_jacobian(q[:3]) @ dq[:3]
         spin = np.zeros(3) if wrist_rotation == "parallel" else J[3:]
         R = place(arm, q, wrist_rotation == "parallel")[1]

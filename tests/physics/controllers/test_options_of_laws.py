@@ -3,8 +3,10 @@
 import pytest
 from support.covers import covered
 
+from tools.laws import JOINT_LAWS, OWN_OPTIONS
+
 OPTIONS = {
-    "law": ("adaptive", "computed_torque", "joint_pd", "joint_pid", "passivity", "sliding_mode"),
+    "law": JOINT_LAWS,
     "own": (False, True),
     "task": ("position", "pose"),
     "feedforward": ("true", "false"),
@@ -13,22 +15,13 @@ OPTIONS = {
     "singularity_damping": ("0.3", "0.1"),
     "null_space_frequency": ("10", "5"),
 }
-OWN = {
-    "adaptive": ("scale=uniform", "friction=false", "adaptation_gain=1e-3"),
-    "computed_torque": ("integral_gain=100",),
-    "joint_pd": ("inertia=posture",),
-    "joint_pid": ("integral_share=0.5", "anti_windup=false"),
-    "passivity": (),
-    "sliding_mode": ("boundary_layer=0.1", "switching_gain=2"),
-}
-"""Options that only one law has, away from their defaults."""
 
 
 @pytest.mark.parametrize("chosen", covered(OPTIONS))
 def test_every_option_composes_and_runs(simulated, chosen):
     law = chosen["law"]
     keys = [f"{key}={value}" for key, value in chosen.items() if key not in ("law", "own")]
-    own = OWN[law] if chosen["own"] else ()
+    own = OWN_OPTIONS[law] if chosen["own"] else ()
     trace = simulated(
         "robot=xarm7", f"controller={law}", *(f"controller.{key}" for key in (*keys, *own)),
         "robot.armature=assumed", "controller.natural_frequency=10", "controller.period=0.001", "duration=0.1",

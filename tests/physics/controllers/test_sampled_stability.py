@@ -5,9 +5,8 @@ import pytest
 from support.arms import checked
 
 from runner.controllers.stability import velocity_loop
+from tools.laws import ARM_LAWS, LAWS
 
-LAWS = ("joint_pd", "joint_pid", "passivity", "sliding_mode", "adaptive", "computed_torque", "operational_space",
-        "whole_body")  # fmt: skip
 H = 0.001
 HOMES = {name: checked(f"robot={name}").arm.home.tolist() for name in ("macro", "xarm7")}
 
@@ -50,10 +49,10 @@ def radius(config):
 
 
 @pytest.mark.parametrize("robot", ["macro", "xarm7"])
-@pytest.mark.parametrize("law", LAWS)
+@pytest.mark.parametrize("law", ARM_LAWS)
 def test_the_bound_is_that_of_the_exact_map(robot, law):
     stays = ("trajectory=joint_quintic", f"trajectory.goal_configuration={HOMES[robot]}")
-    more = () if law in ("operational_space", "whole_body") else stays
+    more = stays if LAWS[law].follows_joints else ()
     one = bound_of(configured(robot, law, 1.0, *more))
     limit = 1.0 / one.share
     below, above = (configured(robot, law, share * limit, *more) for share in (0.95, 1.05))

@@ -93,7 +93,7 @@ def test_repetitions_that_vary_noise_alone(checked_config, overrides, value):
 def test_all_that_is_wrong_is_named(checked_config):
     config = checked_config("robot=macro", "mismatch.gravity=0.9", "mismatch.payload=1", "repetitions=2")
     text = found(config, signals(), signals())["fixed_mismatch"].text
-    assert text.startswith("the 2 repetitions vary noise alone: mismatch.gravity, mismatch.payload are the same in all")
+    assert text.startswith("the 2 repetitions vary only noise: mismatch.gravity, mismatch.payload are the same in all")
 
 
 LINE = ("robot=xarm7", "trajectory=joint_quintic", "trajectory.goal_configuration=[0.4,-0.3,0.3,0.4,-0.3,0.3,0.4]",
@@ -169,7 +169,7 @@ def test_a_run_stores_it_and_its_threshold(make_run):
 
 ROBOT = """\
 # @package _global_
-# An arm of one's own
+# A user's arm
 defaults: [{override /controller: operational_space}, {override /trajectory: quintic}]
 robot: {name: elbow, FORMAT: FILE, tip: tcp, home: [0.0, 0.5, 1.0], goal: [0.4, 0.2, 0.2]}
 """

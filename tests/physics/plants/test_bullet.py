@@ -239,9 +239,7 @@ def test_closed_plants_leave_a_bounded_number_of_servers():
 def test_an_urdf_that_bullet_refuses_is_an_error_and_leaves_no_client(macro_urdf):
     model = RobotModel(macro_urdf, "tip")
     connected = [pybullet.isConnected(client) for client in range(64)]
-    with pytest.raises(
-        ConfigError, match=r"PyBullet does not take it as it is: Cannot load URDF file\.; No links found"
-    ):
+    with pytest.raises(ConfigError, match=r"PyBullet does not accept it: Cannot load URDF file\.; No links found"):
         Bullet("<robot name='none'/>", model, 1e-3, 1)
     assert all(before or not pybullet.isConnected(client) for client, before in enumerate(connected))
 

@@ -86,7 +86,7 @@ def test_what_a_file_tells_mujoco_to_do_is_left_out():
 def test_an_urdf_that_mujoco_refuses_is_an_error_of_one_line():
     with pytest.raises(
         ConfigError,
-        match=r"robot\.urdf: MuJoCo does not take it as it is: Error: axis too small in joint Element name 'q1', id 0$",
+        match=r"robot\.urdf: MuJoCo does not accept it: Error: axis too small in joint Element name 'q1', id 0$",
     ):
         make(pendulum().replace('axis xyz="0 1 0"', 'axis xyz="0 0 0"'), "rod", model=RobotModel(pendulum(), "rod"))
 

@@ -195,7 +195,7 @@ def test_what_is_no_xml(written, text):
 
 @pytest.mark.parametrize("text", ["<sdf/>", "<robot name='x'/>", "<html><link name='a'/></html>"])
 def test_what_is_no_urdf(written, text):
-    with pytest.raises(ConfigError, match=r"robot\.urdf: .*arm\.urdf is no URDF"):
+    with pytest.raises(ConfigError, match=r"robot\.urdf: .*arm\.urdf is not a URDF"):
         read_urdf(written(text), {})
 
 

@@ -124,5 +124,5 @@ def test_no_payload_changes_nothing(arm):
 
 
 def test_a_payload_needs_a_link(arm):
-    with pytest.raises(ConfigError, match=r"robot\.payload: the tip frame 'turn' is no link; .* Links: base, hand"):
+    with pytest.raises(ConfigError, match=r"robot\.payload: the tip frame 'turn' is not a link; .* Links: base, hand"):
         with_payloads(read_urdf(arm(), {}), [Payload("turn", 1.0, (0.0, 0.0, 0.0))])

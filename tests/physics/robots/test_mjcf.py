@@ -45,7 +45,7 @@ ARMS = {
         '<geom fromto="0 0 0 0.2 0 0"/>', '<geom fromto="0 0 0 0.2 0 0"/><geom group="4" size="0.3 0.4"/>'
     ).replace('angle="degree"', 'angle="degree" inertiagrouprange="0 3"'),
     "bounds": CHAIN.replace('angle="degree"', 'angle="degree" boundmass="2" boundinertia="0.02"'),
-    "a joint beside its body's origin": CHAIN.replace('name="q2"', 'name="q2" pos="0.03 -0.02 0.05"'),
+    "a joint off its body's origin": CHAIN.replace('name="q2"', 'name="q2" pos="0.03 -0.02 0.05"'),
     "a slanting axis": CHAIN.replace('name="q2" axis="0 1 0"', 'name="q2" axis="1 2 -3"'),
     "a reference": CHAIN.replace('name="q2"', 'name="q2" ref="25" pos="0.03 0 0.05"'),
     "joints of one body": CHAIN.replace(
@@ -177,7 +177,7 @@ def test_efforts_follow_from_actuators(tmp_path, actuators, joint, efforts, told
 
 def test_a_site_of_a_bodys_name_gets_another(tmp_path):
     path = written(tmp_path, CHAIN.replace('name="tcp"', 'name="hand"'))
-    assert "site 'hand' is the link 'hand_site', beside another" in read_mjcf(path).left_out.rest
+    assert "site 'hand' is the link 'hand_site', as another link has the name" in read_mjcf(path).left_out.rest
     model = RobotModel(read_urdf(path, {}), "hand_site")
     data = mujoco.MjData(own_model(path))
     mujoco.mj_kinematics(own_model(path), data)
@@ -187,7 +187,7 @@ def test_a_site_of_a_bodys_name_gets_another(tmp_path):
 @pytest.mark.parametrize("link", ["hand", "tcp"])
 def test_a_joint_of_a_links_name_gets_another(tmp_path, link):
     path = written(tmp_path, CHAIN.replace('name="q3"', f'name="{link}" pos="0.02 0 0.1"'))
-    assert f"joint '{link}' is '{link}_joint', beside a link" in read_mjcf(path).left_out.rest
+    assert f"joint '{link}' is '{link}_joint', as a link has the name" in read_mjcf(path).left_out.rest
     model, data = RobotModel(read_urdf(path, {}), link), mujoco.MjData(own_model(path))
     data.qpos[:] = [0.3, 0.5, 0.7]
     mujoco.mj_kinematics(own_model(path), data)

@@ -21,16 +21,16 @@ REFUSED = {
         "holds mocap bodies: 'hand2'",
     ),
     "ball joints": (CHAIN.replace('name="q2"', 'name="q2" type="ball"'), "holds ball joints: 'q2'"),
-    "several trees": (CHAIN.replace("</worldbody>", SECOND), "branches: p move beside q1, q2, q3; allowed: a serial"),
+    "several trees": (CHAIN.replace("</worldbody>", SECOND), "branches: p move in addition to q1, q2, q3; allowed"),
     "branches": (
         CHAIN.replace('<site name="tcp" pos="0.2 0 0"/></body>', "").replace(
             '<site name="tcp"', '<body name="finger"><joint name="f"/><geom size="0.01 0.1"/></body>'
             '<body name="finger2"><joint name="f2"/><geom size="0.01 0.1"/></body><site name="tcp"'
         ),
-        "branches: f2 move beside f, q1, q2, q3; allowed: a serial arm",
+        "branches: f2 move in addition to f, q1, q2, q3; allowed: a serial arm",
     ),
-    "a reference nowhere": (CHAIN.replace('name="q2"', 'name="q2" ref="nan"'), "holds a ref that is no .*: 'q2'"),
-    "no joint": ("<mujoco><worldbody><body/></worldbody></mujoco>", "has no joint: it is no arm"),
+    "a reference nowhere": (CHAIN.replace('name="q2"', 'name="q2" ref="nan"'), "holds a ref that is not finite: 'q2'"),
+    "no joint": ("<mujoco><worldbody><body/></worldbody></mujoco>", "has no joint: it is not an arm"),
     "a body without mass": (
         CHAIN.replace('<geom fromto="0 0 0 0.2 0 0"/>', ""),
         "MuJoCo does not take it: Error: mass and inertia of moving bodies must be larger than .* 'hand', id 4",

@@ -288,9 +288,7 @@ def test_a_shape_that_pinocchio_does_not_know_is_no_part_of_a_model(macro_urdf, 
 
 def test_what_pinocchio_says_of_a_body_is_told(macro_urdf, capfd):
     bare = macro_urdf.replace("<inertia ", "<inertial ")
-    with pytest.raises(
-        ConfigError, match="Pinocchio does not take it as it is: Error:   Inertial element must have iner"
-    ):
+    with pytest.raises(ConfigError, match="Pinocchio does not accept it: Error:   Inertial element must have iner"):
         RobotModel(bare, "tip")
     assert capfd.readouterr() == ("", "")
 

@@ -28,7 +28,7 @@ TOP = {
 
 @pytest.fixture(scope="module")
 def three(tmp_path_factory):
-    """The Macro, the Mini, and a second Mini on top: one YAML of one's own."""
+    """The Macro, the Mini, and a second Mini on top: one YAML of the user's."""
     own = tmp_path_factory.mktemp("own")
     (own / "robot").mkdir()
     content = yaml.safe_load((conf_dir() / "robot" / "combined.yaml").read_text())

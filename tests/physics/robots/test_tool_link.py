@@ -80,7 +80,7 @@ def test_the_holding_wrench_in_motion_is_the_rate_of_change_of_momentum(equipped
 
 
 def test_a_flange_that_is_no_link_is_refused(bare):
-    with pytest.raises(ConfigError, match=r"robot\.tool: the flange 'hand' is no link"):
+    with pytest.raises(ConfigError, match=r"robot\.tool: the flange 'hand' is not a link"):
         mount_tool(bare.urdf, "hand", TOOL)
 
 
@@ -100,5 +100,5 @@ def test_a_run_with_a_tool_whose_inertia_no_body_has_is_refused(cli, tmp_path, p
 
 
 def test_two_tools_are_refused(bare):
-    with pytest.raises(ConfigError, match=r"robot\.tool: the URDF has a link 'tool'"):
+    with pytest.raises(ConfigError, match=r"robot\.tool: the URDF already has a link 'tool'"):
         mount_tool(mount_tool(bare.urdf, "flange", TOOL), "flange", TOOL)

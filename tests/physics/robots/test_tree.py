@@ -40,7 +40,7 @@ def test_a_tree_knows_its_root_its_ends_and_the_ways_to_links(read):
         (joint("q", "a", "b") + joint("q", "b", "c"), "2 joints have the name 'q'"),
         (
             joint("q", "a", "bb") + joint("r", "a", "c"),
-            r"joint 'q' has a child 'bb', which is no link \(did you mean b",
+            r"joint 'q' has a child 'bb', which is not a link \(did you mean b",
         ),
     ],
     ids=["circle", "circle apart", "two trees", "two parents", "same name", "no link"],
@@ -73,7 +73,7 @@ def test_a_branched_arm_is_no_robot_of_a_config(tmp_path):
         "</joint>", '<limit lower="-1" upper="1" effort="1" velocity="1"/></joint>'
     )
     (tmp_path / "arm.urdf").write_text(text.replace("</robot>", branch + "</robot>"))
-    with pytest.raises(ConfigError, match=r"branches: q9 move beside q1, q2; allowed: a serial arm"):
+    with pytest.raises(ConfigError, match=r"branches: q9 move in addition to q1, q2; allowed: a serial arm"):
         read_urdf(tmp_path / "arm.urdf", {})
 
 

@@ -44,7 +44,7 @@ def shift(x=0.0, z=0.0):
 
 
 def chain(q, l4, theta1, l5, theta2):
-    """Return the pose of the report's frame 7, factor by factor as it is written there."""
+    """Return the pose of the report's frame 7, factor by factor as written there."""
     right = math.pi / 2
     factors = (
         (turn_z(q[0]), shift(z=0.267)),

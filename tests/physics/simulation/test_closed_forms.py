@@ -25,7 +25,7 @@ def quintic(scale, t_f, rest=0.0):
     return ("trajectory=quintic", f"trajectory.duration={t_f * scale!r}", f"duration={(t_f + rest) * scale!r}")
 
 
-# Lag: a goal law that follows a moving goal is behind it by the speed over k_p / k_v.
+# Lag: a goal law that follows a moving goal lags by the speed over k_p / k_v.
 
 
 @pytest.mark.parametrize("case", covered(ON_PLANTS | {"t_f": (2.0, 3.0, 4.0, 6.0)}))

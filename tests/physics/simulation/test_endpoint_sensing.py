@@ -176,8 +176,8 @@ def test_inertial_damping_damps_as_its_formula_says(gain):
     ("overrides", "expected"),
     [
         (("endpoint_sensor.read_by=[mimi]",), "no control loop is called 'mimi' (did you mean mini?)"),
-        ((SENSED, "endpoint_sensor.period=0.0015"), "endpoint_sensor.period: 0.0015 s is no multiple"),
-        ((SENSED, "endpoint_sensor.delay=0.0004"), "endpoint_sensor.delay: 0.0004 s is no multiple"),
+        ((SENSED, "endpoint_sensor.period=0.0015"), "endpoint_sensor.period: 0.0015 s is not a multiple"),
+        ((SENSED, "endpoint_sensor.delay=0.0004"), "endpoint_sensor.delay: 0.0004 s is not a multiple"),
         ((SENSED, "endpoint_sensor.noise=-1"), "endpoint_sensor.noise: must be 0 or more"),
         (
             (SENSED, "plant=rk4", "plant.dynamics=decoupled", "plant.wrist_rotation=parallel"),

@@ -173,7 +173,7 @@ def test_runs_on_other_plants_know_nothing_of_it():
             ("plant.segments=2", "plant.links.link2.mass=1e-11", "plant.links.link3.mass=1e-11", "input_shaper=zv"),
             "plant.links: parts between springs have next to no inertia",
         ),
-        (("plant.motor_inertia=null",), "a link without mass turns with its motor alone; give each joint one"),
+        (("plant.motor_inertia=null",), "a link without mass turns only with its motor; give each joint one"),
         (("plant.motor_inertia=[1,2]",), "plant.motor_inertia: 2 values for 3 joints"),
         (("plant.motor_inertia=0",), "must be a number above 0, null for a joint whose motor has none"),
         (("plant.damping_ratio=-1",), "plant.damping_ratio: must be 0 or more"),

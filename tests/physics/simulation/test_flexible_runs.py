@@ -168,7 +168,7 @@ def test_the_motors_of_tomeis_law_bring_the_links_exactly_to_rest(simulated):
             ("plant=rk4", "controller=motor_pd", "controller.joint_stiffness=1000"),
             "motor_pd turns motors behind springs",
         ),
-        (("plant=rk4_flexible", "controller=motor_pd"), "motor_pd reads theta as it is"),
+        (("plant=rk4_flexible", "controller=motor_pd"), "motor_pd reads theta unchanged"),
         (("plant=rk4_flexible", "controller=motor_pd", "controller.joint_stiffness=[1,2]"), "2 values for 3 joints"),
     ],
 )

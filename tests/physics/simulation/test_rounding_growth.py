@@ -1,4 +1,4 @@
-"""Repetition 0 from a moved start: against linear theory, in quiet and sensitive runs, and as it is stored."""
+"""Repetition 0 from a moved start: against linear theory, in quiet and sensitive runs, and as stored."""
 
 import json
 

@@ -21,25 +21,27 @@ from runner.simulation.compiled.law import law_cache_key
 from runner.simulation.compiled.loops import CompiledLoops
 from runner.symbolic import program
 from runner.symbolic.structure import CannotCompileError
+from tools.laws import ARM_LAWS, JOINT_LAWS, LAWS
 
-LAWS = ("adaptive", "joint_pid", "passivity", "sliding_mode")
-CASES = [
-    *((robot, "operational_space") for robot in ("macro", "mini", "xarm7", "meca500", "crane", "planar_two", "planar")),
+OTHER_ARMS = [
+    *((robot, "operational_space") for robot in ("mini", "xarm7", "meca500", "crane", "planar_two", "planar")),
     ("combined", "whole_body"),
-    *((robot, "computed_torque") for robot in ("macro", "xarm7", "mixed", "planar")),
-    *((robot, "joint_pd") for robot in ("macro", "xarm7")),
-    ("macro", "motor_pd"),
+    *((robot, "computed_torque") for robot in ("xarm7", "mixed", "planar")),
+    ("xarm7", "joint_pd"),
     *((robot, "impedance") for robot in ("mini", "planar")),
     *((robot, "adaptive") for robot in ("meca500", "mixed")),
-    *(("macro", law) for law in LAWS),
+]
+CASES = [
+    *OTHER_ARMS,
+    *(("macro", law) for law in (*ARM_LAWS, *(name for name, law in LAWS.items() if law.flexible))),
     # Costly to express; the session has each law on the Macro, and seven joints under three others.
-    *(pytest.param("xarm7", law, marks=pytest.mark.slow) for law in LAWS),
+    *(pytest.param("xarm7", law, marks=pytest.mark.slow) for law in JOINT_LAWS if ("xarm7", law) not in OTHER_ARMS),
 ]
 
 
 def configured(robot, controller, *overrides):
     chosen = f"controller={controller}", "trajectory=goal", *overrides
-    if controller == "motor_pd":
+    if LAWS[controller].flexible:
         chosen = (*chosen, "plant=rk4_flexible", "plant.flexible_joints.static_deflection=unknown")
     if robot in strangers.STRANGERS:
         return strangers.config(robot, *chosen)

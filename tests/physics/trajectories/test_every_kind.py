@@ -173,7 +173,7 @@ def test_every_kind_has_values_for_every_robot_and_starts_where_that_starts(robo
         ("lissajous", {"frequencies": [1, 101, 1]}, "less than or equal to 100"),
         ("square", {"half_edge": -1.0}, "greater than 0"),
         ("square", {"edge_direction": [0.0, 1.0, 0.0]}, "perpendicular to normal"),
-        ("waypoints", {"points": []}, "must have one way-point or more beside the start"),
+        ("waypoints", {"points": []}, "must have one way-point or more besides the start"),
         ("waypoints", {"points": [[1.0, 2.0]]}, "at least 3"),
         ("waypoints", {"scale": 0.0}, "greater than 0"),
         ("waypoints", {"time_shares": [0.5, 1.0]}, "must be 3 ascending numbers, one for each of the points"),

@@ -31,7 +31,7 @@ def test_a_tick_has_a_whole_number_of_plant_steps(steps):
 @pytest.mark.parametrize(
     ("override", "problem"),
     [
-        ("plant.step=0.003", r"controller.period: 0.01 s is no multiple of plant.step, 0.003 s"),
+        ("plant.step=0.003", r"controller.period: 0.01 s is not a multiple of plant.step, 0.003 s"),
         ("plant.step=1e-8", r"plant.step: 1e-08 s are 1e\+06 steps in controller.period"),
         ("duration=0.009", r"duration: 0.009 s is shorter than one controller period"),
     ],
@@ -44,5 +44,5 @@ def test_times_that_do_not_fit_are_told(override, problem):
 def test_the_fastest_loop_gives_the_tick():
     stages = ("robot=combined", "controller.period.macro=0.03", "controller.period.mini=0.01")
     assert _timing(*stages, "controller.period={macro:0.03,mini:0.01}").tick == 0.01
-    with pytest.raises(ConfigError, match=r"controller.period.macro: 0.025 s is no multiple of the fastest loop's"):
+    with pytest.raises(ConfigError, match=r"controller.period.macro: 0.025 s is not a multiple of the fastest loop's"):
         _timing("robot=combined", "controller.period={macro:0.025,mini:0.01}")

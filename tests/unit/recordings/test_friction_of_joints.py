@@ -115,7 +115,7 @@ def test_a_joint_that_creeps_has_no_friction(model):
     q, dq, ddq = moved()
     motion = tuple(part * [1.0, 1.0, 1e-3] for part in (q, dq, ddq))
     found = identify_friction(model, motion[0], torques(model, motion) + friction_of(motion[1]), H)
-    assert found.lacking == ["q3: it moves too little, or in one direction alone"]
+    assert found.lacking == ["q3: it moves too little, or in only one direction"]
 
 
 def integrated(dq, period):
@@ -174,7 +174,7 @@ def test_joints_without_torque_or_in_one_direction_have_no_friction(model):
     tau[:, 0] = np.nan
     found = identify_friction(model, q, tau, H)
     assert [joint.joint for joint in found.joints] == ["q2"]
-    assert found.lacking == ["q1: no torque is recorded", "q3: it moves too little, or in one direction alone"]
+    assert found.lacking == ["q1: no torque is recorded", "q3: it moves too little, or in only one direction"]
 
 
 @pytest.mark.parametrize("held", [False, True], ids=["instant", "held"])

@@ -36,22 +36,30 @@ def grid(axes, value, seeds=(), repetitions=8):
 LAWS = {"robot": ["macro", "xarm7"], "controller": ["a", "b", "c"]}
 
 
-def test_each_level_is_compared_with_the_first_within_each_level_of_the_other_axis():
-    sweep = grid(LAWS, lambda robot, law: 10.0 * robot + law)
+def test_all_levels_are_compared_with_each_other_pooled_and_within_each_condition():
+    sweep = grid(LAWS, lambda robot, law: 10.0 + robot + law)
     found = compare_levels(sweep, "controller")
     assert [(one.at, *one.names) for one in found] == [
-        (at, "a", law) for at in ({}, {"robot": "macro"}, {"robot": "xarm7"}) for law in ("b", "c")
+        (at, *laws)
+        for at in ({}, {"robot": "macro"}, {"robot": "xarm7"})
+        for laws in (("a", "b"), ("a", "c"), ("b", "c"))
     ]
     values = sweep.values["rms"]
-    assert found[5].comparison.differences.tolist() == compare_paired(values[3], values[5]).differences.tolist()
-    assert (found[5].metric, found[5].unit) == ("rms", "m")
+    assert found[7].comparison.differences.tolist() == compare_paired(values[3], values[5]).differences.tolist()
+    assert (found[7].metric, found[7].unit) == ("rms", "m")
+
+
+def test_of_more_than_six_levels_each_is_compared_with_the_first():
+    for count, pairs in ((6, 15), (7, 6)):
+        sweep = grid({"controller.period": list(np.arange(float(count)))}, lambda period: period)
+        assert len(level_pairs(sweep, "controller.period")) == pairs
 
 
 def test_a_known_shift_is_found_and_none_is_none():
     shifted = grid(LAWS, lambda robot, law: 0.0)
     shifted.values["rms"][:] = shifted.values["rms"][0] + 0.25 * shifted.axes[1].level[:, None]
     for one in compare_levels(shifted, "controller"):
-        expected = 0.25 if one.names[1] == "b" else 0.5
+        expected = 0.5 if one.names == ("a", "c") else 0.25
         assert one.comparison.difference == pytest.approx(expected)
         assert one.comparison.effect == 1.0
     for one in compare_levels(shifted, "robot"):
@@ -60,7 +68,7 @@ def test_a_known_shift_is_found_and_none_is_none():
 
 def test_axes_that_are_not_named_are_pooled_and_a_draw_counts_once():
     axes = {"robot": ["macro", "xarm7"], "noise": [1e-3, 1e-2, 1e-1], "controller": ["a", "b"]}
-    sweep = grid(axes, lambda robot, noise, law: 100.0 * robot + 7.0 * noise + law)
+    sweep = grid(axes, lambda robot, noise, law: 100.0 * (1 + robot) + 7.0 * noise + 5.0 * law)
     one, other = compare_levels(sweep, "controller", within=["robot"])
     values = sweep.values["rms"]
     by_draw = compare_paired(values[0:6:2].mean(axis=0), values[1:6:2].mean(axis=0))
@@ -68,7 +76,7 @@ def test_axes_that_are_not_named_are_pooled_and_a_draw_counts_once():
     assert one.comparison.a == pytest.approx(by_draw.a)
     assert (other.at, other.comparison.n) == ({"robot": "xarm7"}, 8)
     # The pooled axis changes both levels alike, so the shift is one for any noise.
-    assert other.comparison.difference == pytest.approx(1.0, abs=5e-3)
+    assert other.comparison.difference == pytest.approx(5.0, abs=5e-3)
 
 
 def test_a_swept_seed_is_pooled_like_repetitions_and_can_be_asked_for():
@@ -84,7 +92,9 @@ def test_a_swept_seed_is_pooled_like_repetitions_and_can_be_asked_for():
 def test_cells_of_different_seeds_are_no_pair():
     sweep = grid(LAWS, lambda robot, law: law)
     apart = replace(sweep, seeds=np.array([0, 1, 0, 0, 0, 0]))
-    assert [one.names[1] for one in compare_levels(apart, "controller", within=["robot"])] == ["c", "b", "c"]
+    assert ["".join(one.names) for one in compare_levels(apart, "controller", within=["robot"])] == [
+        "ac", "ab", "ac", "bc",
+    ]  # fmt: skip
 
 
 def test_cells_that_are_missing_are_left_out():
@@ -140,7 +150,7 @@ def test_what_is_beyond_every_number_in_more_levels_on_one_side_is_so_in_the_mea
     sweep = grid({"noise": [1.0, 2.0], "controller": ["a", "b"]}, lambda noise, law: law)
     values = sweep.values["rms"]
     values[1, 0] = values[2, 1] = values[0, 2] = values[1, 2] = np.inf  # b; a at the other level; both at one level
-    overall = compare_levels(sweep, "controller", within=())[0].comparison
+    overall = compare(level_pairs(sweep, "controller", ())[0], "rms")
     assert overall.differences[:2].tolist() == [np.inf, -np.inf]
     assert overall.differences[2] == pytest.approx((values[3, 2] - values[2, 2]) / 2)
     assert overall.lost == (2, 2)

@@ -17,7 +17,7 @@ SPEC = {"rms": Bound(max=0.5)}
 
 
 def failing(*numbers, of=100):
-    """Return the values of a metric; so many of them break SPEC, by the level of the first axis."""
+    """Return the values of a metric; this many of them break SPEC, by the level of the first axis."""
     return lambda level, *_: np.where(np.arange(of) < numbers[level], 1.0, 0.0)
 
 

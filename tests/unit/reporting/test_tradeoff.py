@@ -3,8 +3,9 @@
 import numpy as np
 from hypothesis import given
 from hypothesis import strategies as st
-from support.sample_sweep import noisy, two_axes
+from support.sample_sweep import measurements, noisy, two_axes
 
+from runner.reporting.sweep.subject import choose
 from runner.reporting.sweep.tradeoff import front, pair, section
 
 COORDINATES = st.lists(st.tuples(st.integers(0, 9), st.integers(0, 9)), min_size=1, max_size=30)
@@ -31,8 +32,15 @@ def test_the_front_goes_down_and_leaves_out_what_has_no_number():
 
 
 def test_an_error_is_traded_off_against_its_cost():
-    assert pair(two_axes()) == ("max_tracking_error", "peak_torque")
-    assert pair(two_axes(a=noisy(lambda noise, limit: 1.0 + noise))) is None
+    axes = {"controller.period": [0.01, 0.02], "torque_limits.max": [20.0, 40.0]}
+    metrics = {"max_tracking_error": noisy(lambda period, limit: 1.0 + period),
+               "peak_torque": noisy(lambda period, limit: 1.0 + limit)}  # fmt: skip
+    assert pair(choose(measurements(axes, metrics))) == ("max_tracking_error", "peak_torque")
+    assert pair(choose(measurements(axes, {"a": metrics["max_tracking_error"]}))) is None
+
+
+def test_no_front_runs_over_a_condition():
+    assert pair(two_axes()) is None  # over the noise, which nobody chooses
 
 
 def test_the_section_lists_the_front():

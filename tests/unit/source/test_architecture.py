@@ -1,19 +1,19 @@
 """docs/architecture.md and its picture against the package: docstrings, contract and imports."""
 
-import ast
 import re
 
 from support.pages import ROOT
+from support.recorded_texts import changes
 
-from tools.docs.architecture import PAGE, PICTURE, layers, page, picture, reduced
+from tools.docs.architecture import PAGE, PICTURE, layers, page, picture, reduced, summary
 
 PACKAGE = ROOT / "runner"
 
 
 def test_the_page_and_the_picture_are_up_to_date():
-    stale = "stale: run `python -m tools.docs.architecture`"
-    assert PAGE.read_text() == page(), stale
-    assert PICTURE.read_text() == picture(), stale
+    told = changes("docs/architecture.md", PAGE.read_text().splitlines(), page().splitlines())
+    assert not told, told
+    assert PICTURE.read_text() == picture(), f"{PICTURE.name} is stale; if meant: make record"
 
 
 def test_the_ways_from_data_to_a_report_name_files():
@@ -36,7 +36,6 @@ def test_an_edge_that_follows_from_others_is_left_out():
 def test_docstrings_of_modules_begin_with_a_noun_phrase():
     """A phrase of one line that ends in a full stop, and no clause without a head."""
     headless = {"What", "How", "Where", "Which", "Whether", "Who", "Why", "When", "Tell", "Return"}
-    texts = {path: ast.get_docstring(ast.parse(path.read_text())) or "" for path in PACKAGE.rglob("*.py")}
-    firsts = {path.relative_to(PACKAGE).as_posix(): text.partition("\n")[0] for path, text in texts.items()}
+    firsts = {path.relative_to(PACKAGE).as_posix(): summary(path) for path in PACKAGE.rglob("*.py")}
     assert {name: first for name, first in firsts.items() if not first.endswith((".", ":"))} == {}
     assert {name: first for name, first in firsts.items() if first.partition(" ")[0] in headless} == {}

@@ -25,6 +25,9 @@ READING = {
 """Names and attributes that read a file, parse a string, ask the environment, start a program or connect to one."""
 
 
+_MAY_READ = re.compile(rf"\b({'|'.join(map(re.escape, sorted(READING | {'open'})))})\b")
+
+
 def reads(node):
     """Return True if a node of a syntax tree reads something; `open` does unless its mode is to write."""
     if isinstance(node, ast.Call) and _last(node.func) == "open" and _dotted(node.func) != "os.open":
@@ -45,6 +48,8 @@ def _dotted(node):
 
 def readers(text):
     """Return the lines of a string of Python that read something."""
+    if not _MAY_READ.search(text):
+        return []
     return sorted({node.lineno for node in ast.walk(ast.parse(text)) if reads(node)})
 
 

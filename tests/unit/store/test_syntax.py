@@ -1,4 +1,4 @@
-"""The content of source text: what leaves it as it is and what does not, and one digest for all versions of Python."""
+"""The content of source text: changes that leave it unchanged, others, and one digest for all versions of Python."""
 
 import ast
 import hashlib

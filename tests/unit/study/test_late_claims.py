@@ -17,7 +17,7 @@ RUNS = {f"goal/{preset}": SimpleNamespace(hash=preset * 3) for preset in "ab"}
 
 @pytest.fixture
 def judge(tmp_path):
-    """Write a claim with some changes, and return what is late when it is judged on a date."""
+    """Write a claim with some changes, and return the late claims of a judgement on a date."""
 
     def judged(date, runs=RUNS, **changes):
         (tmp_path / "claims.yaml").write_text(yaml.safe_dump([CLAIM | changes]))

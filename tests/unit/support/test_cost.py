@@ -7,6 +7,7 @@ from pathlib import Path
 from types import SimpleNamespace
 
 import pytest
+import yaml
 from fixtures import cost
 from fixtures.cost import Cost
 
@@ -62,6 +63,23 @@ def test_without_tests_nothing_is_printed(config):
 def test_a_test_is_too_dear_above_four_times_what_it_states(cpu, dear):
     lines = cost.too_dear([Cost("a", 0.0, cpu, 100.0, 4.0)], yardstick=0.5)
     assert lines == (["a: 16.2 yardsticks, more than 4 times the stated 4"] if dear else [])
+
+
+def test_a_folder_is_too_dear_above_its_budget_and_a_new_one_needs_a_budget():
+    costs = [Cost(f"tests/unit/store/test_a.py::{name}", 0.0, 2.5, 100.0, 4.0) for name in "ab"]
+    assert cost.over_budget(costs, {"unit/store": 8.0}, yardstick=0.5) == []
+    assert cost.over_budget([*costs, costs[0]], {"unit/store": 8.0}, yardstick=0.5) == [
+        "unit/store: 15.0 yardsticks, more than 1.25 times its budget of 8"
+    ]
+    assert cost.over_budget(costs, {}, yardstick=0.5) == [
+        "unit/store: 10.0 yardsticks; budgets.yaml has no budget for it"
+    ]
+
+
+def test_each_folder_of_tests_has_a_budget():
+    files = [path.relative_to(TESTS.parent) for path in TESTS.rglob("test_*.py")]
+    folders = {cost.folder_of(f"{path.as_posix()}::test") for path in files}
+    assert set(yaml.safe_load(cost.BUDGETS.read_text())) == folders
 
 
 def test_processes_that_ended_count():

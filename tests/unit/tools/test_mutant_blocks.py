@@ -88,7 +88,7 @@ def test_a_block_begins_in_each_body_and_behind_each_statement_with_bodies():
         (lambda m: m["A"]().g([1, 2]), [5, 6], {("A.g", 0), ("A.g", 1), ("A.g", 2), ("A.g.inner", 0)}),
         (lambda m: m["A"]().empty(), None, {("A.empty", 0)}),
     ],
-    ids=["a loop", "a lambda", "an exception", "a function within one", "a docstring alone"],
+    ids=["a loop", "a lambda", "an exception", "a function within one", "only a docstring"],
 )
 def test_what_runs_sets_its_byte_and_the_value_is_that_without_probes(monkeypatch, call, value, ran):
     module, hits = run(monkeypatch)

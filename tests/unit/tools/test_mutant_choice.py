@@ -113,7 +113,7 @@ def test_a_module_without_functions_is_found_by_those_that_import_it(coverage, t
     (wide,) = places("runner/plants/constants.py", "WIDE = 2\n")
     assert coverage.choose(wide, tree, 60.0) is None  # only a module that has no function
     (tree / USER).write_text("from runner.plants.constants import WIDE\n")
-    choosing._imported.cache_clear()
+    choosing.imported.cache_clear()
     assert coverage.choose(wide, tree, 60.0).tests == ("test_user.py::test_user", "test_far.py::test_all")
 
 

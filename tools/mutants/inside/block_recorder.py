@@ -1,6 +1,6 @@
-"""Plug-in of pytest: writes which blocks each test runs, and the CPU time it takes.
+"""Plug-in of pytest: writes which blocks each test runs, which files it reads, and the CPU time it takes.
 
-The blocks that a fixture of a wider scope runs count for each test that uses it.
+What a fixture of a wider scope runs and reads counts for each test that uses it, and so does the file of each fixture.
 """
 
 import functools
@@ -21,8 +21,9 @@ Path(os.environ["BLOCKS_HITS"]).write_bytes(bytes(int(os.environ["BLOCKS_COUNT"]
 import block_probes  # noqa: E402 - opens the file
 
 functools.lru_cache = block_probes.lru_cache
+_files: dict[str, int] = json.loads(Path(os.environ["BLOCKS_TABLE"]).read_text())["files"]
 _made: dict[int, bytes] = {}
-_used: set[int] = set()
+_used: dict[int, Any] = {}
 _failed: list[str] = []
 
 
@@ -45,7 +46,7 @@ def pytest_runtest_call(item: Any) -> Iterator[None]:
     try:
         return (yield)
     finally:
-        _used.update(id(made) for made in item._request._fixture_defs.values())
+        _used.update((id(made), made) for made in item._request._fixture_defs.values())
 
 
 @pytest.hookimpl(wrapper=True, tryfirst=True)
@@ -57,8 +58,11 @@ def pytest_runtest_protocol(item: pytest.Item) -> Iterator[Any]:
     began = _cpu_time()
     result = yield
     cost = _cpu_time() - began
-    for made in _used & _made.keys():
-        block_probes.add(_made[made])
+    for name, made in _used.items():
+        block_probes.add(_made.get(name, b""))
+        file = _files.get(getattr(getattr(made.func, "__code__", None), "co_filename", ""))
+        if file is not None:
+            block_probes.hits[file] = 1
     seen = block_probes.taken()
     line = {"test": item.nodeid, "cpu": round(cost, 4), "passed": not _failed, "blocks": _indices(seen)}
     with (_FOLDER / f"tests-{_WORKER}.jsonl").open("a") as file:

@@ -37,7 +37,7 @@ BY_MODEL = by_model(ARM.model)
 
 
 def constants(count: int) -> dict[str, FloatArray]:
-    """Return the report's lengths in cm and angles in rad, the same at each of so many configurations."""
+    """Return the report's lengths in cm and angles in rad, the same at each of this many configurations."""
     values = {"l1": L1, "l2": L2, "l3": L3, "l4": L4, "l5": L5, "theta1": THETA1, "theta2": THETA2}
     return {name: np.full(count, value) for name, value in values.items()}
 

@@ -1,0 +1,321 @@
+"""Columns of numbers in text files, and the layout of such a file, from its content.
+
+Commas, semicolons, tabs or blanks separate the cells. Lines of comments may stand above the names of the columns, and
+a line of units below them. If commas do not separate cells, they may be decimal points.
+"""
+
+import csv
+import math
+from array import array
+from collections.abc import Callable, Iterable, Iterator, Sequence
+from dataclasses import dataclass, field, replace
+from itertools import chain
+from operator import itemgetter
+from pathlib import Path
+from typing import TextIO
+
+import numpy as np
+from numpy.typing import NDArray
+
+from runner.base.arrays import FloatArray
+from runner.base.errors import RunnerError, nearest
+from runner.base.limits import RECORDING_NUMBERS, RECORDING_ROW, RECORDING_ROWS, ExcessError
+from runner.base.sanitize import few, quoted
+
+MISSING = ("", "nan", "na", "null", "none", "-nan", "nan(ind)", "-nan(ind)")
+"""Cells without a number, in lower case."""
+
+_COMMENTS = ("#", "%", "//")
+_HEAD = 200  # lines, all but the last two may be comments
+_SAMPLE = 50  # rows from which columns of numbers are found
+_MOST_TOLD = 5  # problems of one file
+
+
+@dataclass(frozen=True)
+class Table:
+    """Columns of numbers.
+
+    Attributes:
+        path: Its file or folder.
+        form: Words for its format.
+        columns: Each column by its name, shape (N,); NaN for a cell without a number.
+        units: Unit of a column by the file's line of units.
+        lines: Number of each row's line in the file, shape (N,); None for a file without lines.
+        others: Columns that hold no numbers.
+        notes: Messages for a user: rows that are left out, and parts of the file that cannot be read.
+    """
+
+    path: Path
+    form: str
+    columns: dict[str, FloatArray]
+    units: dict[str, str] = field(default_factory=dict)
+    lines: NDArray[np.int64] | None = None
+    others: tuple[str, ...] = ()
+    notes: tuple[str, ...] = ()
+
+    def __len__(self) -> int:
+        return len(next(iter(self.columns.values()), ()))
+
+    def place(self, row: int) -> str:
+        """Return the label of a row in messages."""
+        return f"row {row + 1}" if self.lines is None else f"line {self.lines[row]}"
+
+    def of(self, names: Sequence[str], time: str | None = None) -> "Table":
+        """Return some columns, without the rows in which all of them but the time are empty.
+
+        Args:
+            names: Names of the columns, the time included.
+            time: The column of the time; None if rows have an even rate: then all rows stay.
+
+        Raises:
+            RunnerError: if a column is not there.
+        """
+        self.require(names)
+        columns = {name: self.columns[name] for name in names}
+        signals = [column for name, column in columns.items() if name != time]
+        if time is None or not signals or not len(self):
+            return replace(self, columns=columns)
+        kept = ~np.logical_and.reduce([np.isnan(column) for column in signals])
+        return replace(self, columns=columns)._only(kept, "without any of the columns")
+
+    def _only(self, kept: NDArray[np.bool_], why: str) -> "Table":
+        if kept.all():
+            return self
+        return replace(
+            self,
+            columns={name: column[kept] for name, column in self.columns.items()},
+            lines=None if self.lines is None else self.lines[kept],
+            notes=(*self.notes, f"{np.sum(~kept):,} rows {why} are left out"),
+        )
+
+    def require(self, names: Sequence[str]) -> None:
+        """Check that the columns are there.
+
+        Raises:
+            RunnerError: if one is not, or has no numbers; names what there is.
+        """
+        known = list(self.columns)
+        if missing := [name for name in names if name not in self.columns]:
+            shown = [
+                f"{quoted(name)}{' with numbers' * (name in self.others)}{nearest(name, known)}" for name in missing
+            ]
+            raise RunnerError(f"{self.path}: has no column {few(shown)}; its columns: {few(known) or 'none'}")
+
+
+@dataclass(frozen=True)
+class _Layout:
+    """Layout of a text file: separator (empty for blanks), names, units, and the line before the first row."""
+
+    separator: str
+    names: Sequence[str]
+    units: Sequence[str]
+    before: int
+
+    def cells(self, lines: Iterable[str]) -> Iterator[list[str]]:
+        return csv.reader(lines, delimiter=self.separator) if self.separator else map(str.split, lines)
+
+
+def read_text_table(path: Path, file: TextIO, wanted: Sequence[str] | None = None, form: str = "text") -> Table:
+    """Return the columns of a text file.
+
+    Args:
+        path: Its path, for messages.
+        file: The open file; it is read twice.
+        wanted: The only columns to read: each of their cells must hold a number or say that it is missing. None reads
+            each column that has numbers.
+        form: Words for what the text is, such as "text in a zip file".
+
+    Raises:
+        RunnerError: if it is not a table, lacks a column, or has a cell without a number; names the line.
+        ExcessError: if it is too large.
+    """
+    layout = _layout(path, file)
+    file.seek(0)
+    names = list(layout.names)
+    twice = [name for name in dict.fromkeys(names) if names.count(name) > 1 and (wanted is None or name in wanted)]
+    if twice and wanted is not None:
+        raise RunnerError(f"{path}: has the column {quoted(twice[0])} more than once")
+    rows = _Rows(file, layout)
+    sample = list(_first(rows, _SAMPLE))
+    numeric = [place for place, name in enumerate(names) if name not in twice and _has_numbers(sample, place)]
+    others = tuple(name for place, name in enumerate(names) if place not in numeric)
+    if wanted is not None:
+        Table(path, form, dict.fromkeys(names, np.empty(0))).require(wanted)
+        numeric = [names.index(name) for name in wanted]
+    numbers, lines, notes = _Numbers(path, names, numeric, strict=wanted is not None).read(chain(sample, rows), rows)
+    separated = {"": "blanks", "\t": "tabs", ",": "commas", ";": "semicolons"}[layout.separator]
+    units = {name: unit for name, unit in zip(names, layout.units, strict=False) if unit}
+    columns = {names[place]: numbers[:, index] for index, place in enumerate(numeric)}
+    return Table(path, f"{form}, cells separated by {separated}", columns, units, lines, others, notes)
+
+
+def _layout(path: Path, file: TextIO) -> _Layout:
+    """Return the layout of a text file; the file is read up to its second line without comment."""
+    comments: list[str] = []
+    found: list[tuple[int, str]] = []
+    for number in range(1, _HEAD + 1):
+        line = file.readline(RECORDING_ROW.most + 2)
+        if excess := RECORDING_ROW.excess(len(line)):
+            raise ExcessError(f"it {excess}")
+        if not line or len(found) == 2:
+            break
+        if line.startswith(_COMMENTS):
+            comments.append(line.lstrip("#%/ "))
+        elif line.strip():
+            found.append((number, line))
+    if not found:
+        raise RunnerError(f"{path}: is empty. Allowed: a log with rows of numbers.")
+    (number, first), *second = found
+    separator = ";" if first.count(";") else max(",\t", key=first.count)
+    layout = _Layout(separator if separator in first else "", (), (), number)
+    (cells,) = layout.cells([first])
+    if any(_number(cell.strip(), layout.separator) is not None for cell in cells):
+        (above,) = layout.cells(comments[-1:]) if comments else ([],)
+        if len(above) != len(cells) and comments:
+            above = comments[-1].replace(",", " ").split()
+        names = above if len(above) == len(cells) else [f"column {place + 1}" for place in range(len(cells))]
+        return replace(layout, names=[name.strip() for name in names], before=number - 1)
+    names = [cell.strip() for cell in cells]
+    if not names[-1]:
+        names.pop()
+    if second:
+        (below,) = layout.cells([second[0][1]])
+        words = [cell.strip() for cell in below]
+        if any(words) and len(names) <= len(words) <= len(names) + 1 and not any(map(_is_cell, words)):
+            return replace(layout, names=names, units=[word.strip("[]() ") for word in words], before=second[0][0])
+    return replace(layout, names=names)
+
+
+class _Rows:
+    """Rows of cells with the numbers of their lines; none is longer than allowed, as quotes can join all lines."""
+
+    def __init__(self, file: TextIO, layout: _Layout) -> None:
+        self._file, self._layout = file, layout
+        self._number = self._held = 0
+        self.whole = True  # whether the line read last has an end
+        self._iterator = self._read()
+
+    def __iter__(self) -> Iterator[tuple[int, list[str]]]:
+        return self._iterator
+
+    def _read(self) -> Iterator[tuple[int, list[str]]]:
+        for cells in self._layout.cells(self._lines()):
+            self._held = 0
+            yield self._number, cells
+
+    def _lines(self) -> Iterator[str]:
+        before, points = self._layout.before, self._layout.separator != ","
+        for number, line in enumerate(self._file, start=1):
+            self._number = number
+            if number <= before:
+                continue
+            self._held += len(line)
+            if excess := RECORDING_ROWS.excess(number) or RECORDING_ROW.excess(self._held):
+                raise ExcessError(f"it {excess}")
+            if line[0] in "#%" or line.startswith("//"):
+                continue
+            self.whole = line[-1] == "\n"
+            yield line.replace(",", ".") if points and "," in line else line
+
+
+def _first(rows: Iterable[tuple[int, list[str]]], count: int) -> Iterator[tuple[int, list[str]]]:
+    for index, row in enumerate(rows, start=1):
+        yield row
+        if index == count:
+            return
+
+
+def _has_numbers(sample: Sequence[tuple[int, list[str]]], place: int) -> bool:
+    cells = [row[place].strip() for _, row in sample if place < len(row)]
+    return bool(cells) and all(map(_is_cell, cells))
+
+
+def _is_cell(text: str) -> bool:
+    """Return whether a cell holds a number, or says that it is missing."""
+    return text.lower() in MISSING or _number(text, "") is not None
+
+
+def _number(text: str, separator: str) -> float | None:
+    """Return the number in a cell; None if there is none."""
+    try:
+        return float(text if separator == "," else text.replace(",", "."))
+    except ValueError:
+        return None
+
+
+class _Numbers:
+    """Numbers of some columns of a text file.
+
+    Args:
+        path: The file.
+        names: Names of all columns.
+        places: Indices of the columns.
+        strict: Whether a cell with other text is an error; otherwise it counts as missing.
+    """
+
+    def __init__(self, path: Path, names: Sequence[str], places: Sequence[int], strict: bool) -> None:
+        self._path, self._names, self._places, self._strict = path, names, places, strict
+        self._problems: list[str] = []
+        self._told = 0
+
+    def read(
+        self, rows: Iterable[tuple[int, list[str]]], source: _Rows
+    ) -> tuple[FloatArray, NDArray[np.int64], tuple[str, ...]]:
+        """Return the numbers, shape (N, n), the line of each row, and messages for a user."""
+        data, lines, count = array("d"), array("q"), len(self._names)
+        most = max(1, max(self._places, default=0) + 1)
+        pick: Callable[[list[str]], Sequence[str]] = (
+            itemgetter(*self._places)
+            if len(self._places) > 1
+            else lambda cells: [cells[place] for place in self._places]
+        )
+        cut: tuple[int, int] | None = None
+        for line, cells in rows:
+            if cut is not None:
+                self._tell(*cut)
+                cut = None
+            if len(cells) != count and not (len(cells) == count + 1 and not cells[-1].strip()):
+                if any(cell.strip() for cell in cells):
+                    cut = (line, len(cells))  # at the end of the file it is what a killed logger leaves
+                continue
+            try:
+                data.fromlist(list(map(float, pick(cells))))
+            except ValueError:
+                data.fromlist([self._cell(line, place, cells[place].strip()) for place in self._places])
+            lines.append(line)
+            if not len(lines) % 1000 and (excess := RECORDING_NUMBERS.excess(len(data))):
+                raise ExcessError(f"it {excess}")
+        notes = []
+        if cut is not None and source.whole:
+            self._tell(*cut)
+        elif cut is not None:
+            notes.append(f"the last line, {cut[0]}, is cut off and left out")
+        numbers = np.frombuffer(data, dtype=np.float64).reshape(len(lines), -1) if len(data) else np.empty((0, most))
+        self._refuse_infinite(numbers, lines)
+        if self._problems:
+            raise RunnerError(f"{self._path}: {'; '.join(self._shown())}")
+        return numbers, np.frombuffer(lines, dtype=np.int64) if lines else np.empty(0, dtype=np.int64), tuple(notes)
+
+    def _refuse_infinite(self, numbers: FloatArray, lines: Sequence[int]) -> None:
+        for row, column in np.argwhere(np.isinf(numbers))[: _MOST_TOLD + 1] if self._strict else ():
+            self._add(f"line {lines[row]}: {self._names[self._places[column]]} is 'inf'; needed: a finite number")
+
+    def _cell(self, line: int, place: int, text: str) -> float:
+        found = _number(text, ",")
+        if found is not None:
+            return found
+        if self._strict and text.lower() not in MISSING:
+            self._add(f"line {line}: {self._names[place]} is {quoted(text)}; needed: a finite number")
+        return math.nan
+
+    def _tell(self, line: int, cells: int) -> None:
+        self._add(f"line {line}: {cells} cells for {len(self._names)} columns")
+
+    def _add(self, problem: str) -> None:
+        self._told += 1
+        if len(self._problems) < _MOST_TOLD:
+            self._problems.append(problem)
+
+    def _shown(self) -> list[str]:
+        more = self._told - _MOST_TOLD
+        return [*self._problems, *([f"{more} more problems like these"] if more > 0 else [])]

@@ -1,0 +1,221 @@
+"""Meanings of a log's columns by their names, and who wrote the log."""
+
+import re
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass
+from typing import Literal
+
+from runner.recordings.messages import STAMP
+
+Kind = Literal["time", "position", "reference", "velocity", "torque", "current", "tip"]
+_Column = tuple[str, Kind, str, str, str]
+
+
+@dataclass(frozen=True)
+class Named:
+    """Meaning of a column by its name.
+
+    Attributes:
+        column: The column.
+        kind: The signal.
+        group: Stem of the name: columns of one stem belong together.
+        label: Joint, as the log has it: a name or a number; the axis of a tip; empty for a time.
+        unit: Unit; empty if the name does not tell it.
+        reason: Why.
+        holds: Of a torque, see Column; empty if the name does not tell it.
+        side: Of a torque, see Column; empty if the name does not tell it.
+    """
+
+    column: str
+    kind: Kind
+    group: str
+    label: str
+    unit: str
+    reason: str
+    holds: str = ""
+    side: str = ""
+
+
+@dataclass(frozen=True)
+class _Writer:
+    """A program that writes logs: its name, a column by which it is known, and its columns.
+
+    Each is a pattern of names with the groups `label`, kind, unit and what a torque holds and where it is measured.
+    """
+
+    name: str
+    known: str
+    columns: Sequence[_Column]
+
+
+_J = r"_(?P<label>\d+)"
+_RTDE: Sequence[_Column] = (
+    (r"timestamp", "time", "s", "", ""),
+    (rf"actual_q{_J}", "position", "rad", "", ""),
+    (rf"target_q{_J}", "reference", "rad", "", ""),
+    (rf"actual_qd{_J}", "velocity", "rad/s", "", ""),
+    (rf"target_moment{_J}", "torque", "N m", "commanded", ""),
+    (rf"actual_current_as_torque{_J}", "torque", "N m", "", ""),
+    (rf"actual_current{_J}", "current", "A", "", ""),
+    (r"actual_TCP_pose_(?P<label>[012])", "tip", "m", "", ""),
+)
+WRITERS: Sequence[_Writer] = (
+    _Writer("UR's RTDE client or ur-rtde's recorder", r"(actual|target)_q_0", _RTDE),
+    _Writer(
+        "mecademicpy",
+        r"(Rt)?Target(JointPos|CartPos)_\w+",
+        (
+            (r"timestamp", "time", "us", "", ""),
+            (rf"(Rt)?TargetJointPos{_J}", "reference", "deg", "", ""),
+            (rf"(Rt)?(Act|Actual)?JointPos{_J}", "position", "deg", "", ""),
+            (rf"(Rt)?(Act|Actual)?JointVel{_J}", "velocity", "deg/s", "", ""),
+            (rf"(Rt)?(Act|Actual|Target)?JointTorq{_J}", "torque", "%", "", ""),
+        ),
+    ),
+    _Writer(
+        "libfranka or panda-python",
+        r"(state\.|robot_state\.)?(tau_J|O_T_EE)[\[_. ]?\d+\]?",
+        (
+            (r"(state\.|robot_state\.)?time", "time", "", "", ""),
+            (r"(state\.|robot_state\.)?q[\[_. ]?(?P<label>\d+)\]?", "position", "rad", "", ""),
+            (r"(state\.|robot_state\.)?q_d[\[_. ]?(?P<label>\d+)\]?", "reference", "rad", "", ""),
+            (r"(state\.|robot_state\.)?dq[\[_. ]?(?P<label>\d+)\]?", "velocity", "rad/s", "", ""),
+            (r"(state\.|robot_state\.)?tau_J[\[_. ]?(?P<label>\d+)\]?", "torque", "N m", "torque", "link"),
+            (r"(state\.|robot_state\.)?tau_J_d[\[_. ]?(?P<label>\d+)\]?", "torque", "N m", "without_gravity", "link"),
+        ),
+    ),
+    _Writer(
+        "ROS joint states",
+        r".+\.(position|velocity|effort)",
+        (
+            (STAMP, "time", "s", "", ""),
+            (r"(?P<label>.+)\.reference\.position", "reference", "rad", "", ""),
+            (r"(?P<label>.+)\.feedback\.position", "position", "rad", "", ""),
+            (r"(?P<label>.+)\.feedback\.velocity", "velocity", "rad/s", "", ""),
+            (r"(?P<label>.+)\.feedback\.effort", "torque", "N m", "", ""),
+            (r"(?P<label>(?!.*\.(reference|feedback)\.).+)\.position", "position", "rad", "", ""),
+            (r"(?P<label>(?!.*\.(reference|feedback)\.).+)\.velocity", "velocity", "rad/s", "", ""),
+            (r"(?P<label>(?!.*\.(reference|feedback)\.).+)\.effort", "torque", "N m", "", ""),
+        ),
+    ),
+    _Writer(
+        "PlotJuggler",
+        r"/.+/(position|velocity|effort)",
+        (
+            (r"(__)?time", "time", "s", "", ""),
+            (r"/(.+/)?(?P<label>[^/]+)/position", "position", "rad", "", ""),
+            (r"/(.+/)?(?P<label>[^/]+)/velocity", "velocity", "rad/s", "", ""),
+            (r"/(.+/)?(?P<label>[^/]+)/effort", "torque", "N m", "", ""),
+        ),
+    ),
+    _Writer(
+        "LeRobot",
+        r"(observation\.state|action)\..+",
+        (
+            (r"timestamp", "time", "s", "", ""),
+            (r"observation\.state\.(main_)?(?P<label>.+?)(\.pos)?", "position", "", "", ""),
+            (r"action\.(main_)?(?P<label>.+?)(\.pos)?", "reference", "", "", ""),
+        ),
+    ),
+)
+
+_UNITS = {
+    "deg": "deg", "degree": "deg", "degrees": "deg", "rad": "rad", "mrad": "mrad", "mm": "mm", "cm": "cm", "m": "m",
+    "nm": "N m", "n m": "N m", "n*m": "N m", "n.m": "N m", "mnm": "mN m", "a": "A", "amp": "A", "ma": "mA",
+    "s": "s", "sec": "s", "ms": "ms", "us": "us", "ns": "ns", "%": "%", "percent": "%",
+}  # fmt: skip
+_WORDS: Sequence[tuple[Kind, str]] = (
+    (
+        "reference",
+        "q_d q_des des_q desired_q target_q q_target q_cmd cmd_q command cmd ref q_ref reference action "
+        "setpoint target desired q_c position_command",
+    ),
+    ("velocity", "qd dq vel velocity speed joint_vel joint_velocity qdot actual_qd"),
+    (
+        "torque",
+        "tau torque effort moment tq tau_j joint_torque joint_effort tau_meas measured_tq tau_measured measured_torque",
+    ),
+    ("current", "current motor_current i cur actual_current"),
+    (
+        "position",
+        "q pos position joint angle joint_pos joint_position joint_angle theta j q_meas actual_q "
+        "measured_q state actual axis q_actual",
+    ),
+)
+_STEMS: Mapping[str, Kind] = {stem: kind for kind, stems in _WORDS for stem in stems.split()}
+_TIMES = (
+    "time",
+    "t",
+    "timestamp",
+    "stamp",
+    "__time",
+    "%time",
+    "time_stamp",
+    "elapsed",
+    "header_stamp",
+    "sec",
+    "seconds",
+)
+_TIPS = re.compile(r"(tip|tcp|ee|eef|tool|end_effector|laser|ee_pos|tcp_pose|position)?_?(?P<label>[xyz])")
+
+
+def writer_of(columns: Sequence[str]) -> str:
+    """Return the name of the program that wrote a log; empty if it is not known."""
+    return next((writer.name for writer in WRITERS if _is_of(writer, columns)), "")
+
+
+def _is_of(writer: _Writer, columns: Sequence[str]) -> bool:
+    return any(re.fullmatch(writer.known, column) for column in columns)
+
+
+def named(columns: Sequence[str], units: Mapping[str, str]) -> Iterator[Named]:
+    """Yield the columns whose names have a meaning.
+
+    Args:
+        columns: Names of the columns.
+        units: Unit of a column by the log's own line of units.
+    """
+    for writer in WRITERS:
+        if _is_of(writer, columns):
+            yield from (found for column in columns if (found := _by_writer(writer, column)))
+            return
+    for column in columns:
+        if found := _by_stem(column, units.get(column, "")):
+            yield found
+
+
+def _by_writer(writer: _Writer, column: str) -> Named | None:
+    for pattern, kind, unit, holds, side in writer.columns:
+        if match := re.fullmatch(pattern, column):
+            label = match.groupdict().get("label") or ""
+            if kind == "tip":
+                label = "xyz"[int(label)]
+            return Named(column, kind, pattern, label, unit, f"names of {writer.name}", holds, side)
+    return None
+
+
+def _by_stem(column: str, unit: str) -> Named | None:
+    """Return the meaning of a name that many programs might write."""
+    text = column.strip().lower()
+    if match := re.search(r"[\[(]\s*([a-z%*. ]+)\s*[\])]\s*$", text):
+        unit, text = match[1], text[: match.start()].strip()
+    words = [word for word in re.split(r"[\s_.\[\]()/:-]+", text) if word]
+    if len(words) > 1 and words[-1] in _UNITS and not unit:
+        unit = words.pop()
+    unit = _UNITS.get(unit.lower().strip(), unit)
+    plain = "_".join(words)
+    reason = f"the name {column!r}"
+    if plain in _TIMES or text in _TIMES:
+        return Named(column, "time", "time", "", unit, reason)
+    if match := _TIPS.fullmatch(plain):
+        return Named(column, "tip", "tip", match["label"], unit, reason)
+    number = re.search(r"(\d+)(?!.*\d)", plain)
+    stem = plain if number is None else (plain[: number.start()] + plain[number.end() :]).strip("_")
+    stem = re.sub(r"^(joint|j|axis)_(?=.)|(?<=.)_(joint|j|axis)$", "", stem)
+    if number is not None and stem in _STEMS:
+        return Named(column, _STEMS[stem], stem, number[1], unit, reason)
+    for place in range(1, len(words)):  # the name of a joint before or after the signal
+        for signal, joint in (("_".join(words[place:]), words[:place]), ("_".join(words[:place]), words[place:])):
+            if signal in _STEMS and signal not in ("j", "i", "joint", "axis"):
+                return Named(column, _STEMS[signal], signal, "_".join(joint), unit, reason)
+    return None

@@ -1,0 +1,396 @@
+r"""Contradictions between the signals of a log: sign, order and unit of joints, by the arm's own equations.
+
+A log is compared with itself, not with a run: torques with those of the rigid body at the recorded motion, the tip with
+the forward kinematics, and positions with commanded ones. With the recorded torque tau_j of joint j and the
+torque of the model \hat\tau_j, the lack of fit is
+
+.. math:: r_j = \min_{a, b, c \ge 0} \frac{|\tau_j - \hat\tau_j - a\,\ddot q_j - b\,\dot q_j -
+    c\,\mathrm{sgn}\,\dot q_j|}{|\tau_j|}
+
+The three columns stand for the inertia of the rotor and friction. As these cannot be below zero, the sign of a joint
+without gravity is seen, too. Another meaning of a column is asked for if it lowers the sum of the logarithms of all r
+clearly: errors of masses, friction and payload do not.
+"""
+
+from collections.abc import Callable, Iterator, Sequence
+from dataclasses import dataclass, replace
+from itertools import combinations
+
+import numpy as np
+import pinocchio as pin
+from scipy.optimize import nnls
+
+from runner.base.arrays import FloatArray
+from runner.recordings.columns_map import Signal
+from runner.recordings.recording import Recording
+from runner.recordings.smoothing import cutoff, derivative, evenly, low_pass
+from runner.robots.model import RobotModel
+
+_MOST = 20_000  # rows that are smoothed
+_ROWS = 300  # at which the equations are evaluated
+_CLEARLY = 0.5  # of the sum of logarithms: another meaning explains 40 % more
+_LEAST = {"torque": 0.15, "tip": 0.03, "reference": 0.1}  # r above which a meaning is doubted at all
+_NOISE = {"torque": 0.05, "tip": 0.005, "reference": 0.05}  # of a signal's size, below which r tells nothing
+_DEGREE = np.pi / 180.0
+_SLOWEST_ROWS = 0.5  # s
+_TOO_FAST = 3.0  # times the limit of a joint's speed, in half of all rows
+_ZERO = 1e-9  # N m: a torque that is smaller in all rows counts as zero
+_MOVES = 1e-4  # rad or m: what moves less tells nothing
+_LENGTHS = ((1e-3, "fits if it is in mm", "unit: mm"), (1e3, "fits if it is in m", "unit: m"))
+_OFFSET = 1e-3  # m, of the tip, that is reported
+_NO_TIP = 0.25  # r of a tip: a delay of 0.1 s leaves less
+_WORSE = 0.1  # of a torque
+_DOUBTED, _HALVED = 0.1, 0.5  # r from which on the unit of a torque is doubted, and how much less another one leaves
+_OTHER_SCALE = 3.0  # times the model's torque, from which on a unit is doubted
+
+_NO_GRAVITY = "holds: without_gravity"
+WITHOUT_GRAVITY = f"Say {_NO_GRAVITY}."
+"""End of the question whether gravity is in the torques."""
+
+
+@dataclass(frozen=True)
+class Verdict:
+    """What the signals of a log say of each other.
+
+    Attributes:
+        questions: Contradictions, each with its evidence and the line of the column map that settles it.
+        notes: Observations that need no answer.
+        confirmed: Evidence for each joint: signals that would contradict another sign of its position.
+    """
+
+    questions: tuple[str, ...]
+    notes: tuple[str, ...]
+    confirmed: dict[str, tuple[str, ...]]
+
+
+@dataclass(frozen=True)
+class _Motion:
+    """Even rows of a log: positions with derivatives, and what they are compared with, NaN where not recorded."""
+
+    q: FloatArray
+    dq: FloatArray
+    ddq: FloatArray
+    torque: FloatArray
+    tip: FloatArray
+    reference: FloatArray
+
+
+_Change = Callable[[_Motion], _Motion]
+
+
+@dataclass(frozen=True)
+class _Meaning:
+    """Another meaning of columns: its words, the line that settles it, and the motion that it makes."""
+
+    words: str
+    line: str
+    change: _Change
+
+
+def check_consistency(model: RobotModel, recording: Recording) -> Verdict:
+    """Return the contradictions between the signals of a log.
+
+    Args:
+        model: The arm.
+        recording: The log.
+    """
+    joints = model.joint_names
+    q = recording.positions(joints)
+    questions = [*_empty_torques(recording), *_slow_rows(recording)]
+    if questions or q is None:
+        return Verdict(tuple(questions), (), {})
+    if not (np.ptp(q, axis=0) > _MOVES).any():
+        return Verdict((f"the arm stands still: no joint moves by {_MOVES:g} rad. Use a log of a motion.",), (), {})
+    motion = _motion(recording, joints, q)
+    judge = _Judge(model, recording)
+    before = judge.lacks(motion)
+    chosen, changed = _best(judge, motion, before, list(_meanings(model, recording, motion)))
+    questions += [_question(meaning, joints, before, judge.lacks(changed)) for meaning in chosen]
+    notes = [] if questions else list(_tip_offset(model, judge, motion))
+    questions += [] if questions else list(_unexplained(before))
+    questions += [] if questions else list(_too_fast(model, recording, q))
+    questions += [] if questions else list(_scales(judge, motion, recording, joints))
+    return Verdict(tuple(questions), tuple(notes), {} if questions else dict(_confirmed(judge, motion, before, joints)))
+
+
+def _empty_torques(recording: Recording) -> Iterator[str]:
+    for signal, values in recording.signals.items():
+        if signal.kind == "torque" and np.abs(values).max() < _ZERO:
+            yield (
+                f"columns.{recording.columns[signal]}: the torque of {signal.of} is 0 in all rows (largest "
+                f"{np.abs(values).max():.3g}): the drive reports none. Leave out the column."
+            )
+
+
+def _slow_rows(recording: Recording) -> Iterator[str]:
+    if recording.period > _SLOWEST_ROWS:
+        yield (
+            f"time: rows are {recording.period:.3g} s apart: is it in ms, or a number of rows? Say unit: ms, or rate "
+            "instead of time."
+        )
+
+
+def _unexplained(lacks: dict[tuple[str, int], float]) -> Iterator[str]:
+    """Yield a question if the tip does not follow from the positions, and no other meaning of one column helps."""
+    if (lack := lacks.get(("tip", 0), 0.0)) > _NO_TIP:
+        yield (
+            f"columns of the tip: {lack:.0%} of its motion does not follow from the positions, in any order of two. "
+            "Say the right joints, the frame of the tip, or leave out its columns."
+        )
+
+
+def _too_fast(model: RobotModel, recording: Recording, q: FloatArray) -> Iterator[str]:
+    speeds = np.median(np.abs(np.diff(q, axis=0)) / np.diff(recording.t)[:, None], axis=0)
+    fast = np.flatnonzero(speeds > _TOO_FAST * model.velocity_limits)
+    if len(fast):
+        joint = model.joint_names[fast[0]]
+        yield (
+            f"columns.{recording.columns[Signal('position', joint)]}: {joint} would move at {speeds[fast[0]]:.3g} "
+            f"{model.joint_units[fast[0]]}/s, and its limit is {model.velocity_limits[fast[0]]:.3g}"
+            f"{f' ({len(fast)} joints like this)' if len(fast) > 1 else ''}. Say the unit of the time or the column."
+        )
+
+
+def _motion(recording: Recording, joints: Sequence[str], q: FloatArray) -> _Motion:
+    every = max(1, len(recording.t) // _MOST)
+    period, t = every * recording.period, recording.t[::every]
+    times = np.minimum(period * np.arange(int(t[-1] / period + 1e-6) + 1), t[-1])
+    smooth = low_pass(evenly(t, q[::every], times), period, cutoff(period))
+    dq = derivative(smooth, period)
+    edge = min(len(times) // 10, round(0.5 / period))
+    rows = np.unique(np.linspace(edge, len(times) - 1 - edge, min(_ROWS, len(times) - 2 * edge)).astype(int))
+
+    def others(kind: str, names: Sequence[str]) -> FloatArray:
+        columns = np.full((len(rows), len(names)), np.nan)
+        for place, name in enumerate(names):
+            values = recording.signals.get(Signal(kind, name))  # type: ignore[arg-type]
+            if values is not None:
+                shift = recording.torque_shift if kind == "torque" else 0.0
+                even = np.interp(times, recording.t + shift, values)
+                columns[:, place] = low_pass(even, period, cutoff(period))[rows]
+        return columns
+
+    return _Motion(
+        smooth[rows], dq[rows], derivative(dq, period)[rows],
+        others("torque", joints), others("tip", ("x", "y", "z")), others("reference", joints),
+    )  # fmt: skip
+
+
+class _Judge:
+    """Lack of fit of a motion, by the kind of evidence and joint."""
+
+    def __init__(self, model: RobotModel, recording: Recording) -> None:
+        self._model, self._data = pin.Model(model.pin_model), model.pin_model.createData()
+        if recording.holds == "without_gravity":
+            self._model.gravity = pin.Motion.Zero()
+        self._tip = model.tip_frame
+
+    def rigid(self, motion: _Motion) -> FloatArray:
+        """Return the torques of the model, shape (N, nq)."""
+        rows = zip(motion.q, motion.dq, motion.ddq, strict=True)
+        return np.array([pin.rnea(self._model, self._data, *row) for row in rows])
+
+    def lacks(self, motion: _Motion) -> dict[tuple[str, int], float]:
+        """Return r of each signal that is recorded, by its kind and joint."""
+        found: dict[tuple[str, int], float] = {}
+        recorded = np.flatnonzero(~np.isnan(motion.torque[0]))
+        if len(recorded):
+            rigid = self.rigid(motion)
+            for joint in recorded.tolist():
+                speed = motion.dq[:, joint]
+                columns = np.column_stack([motion.ddq[:, joint], speed, np.sign(speed)])
+                y = motion.torque[:, joint]
+                found["torque", joint] = nnls(columns, y - rigid[:, joint])[1] / max(float(np.linalg.norm(y)), _ZERO)
+        axes = ~np.isnan(motion.tip[0])
+        if axes.any():
+            rest, swing = self.tip_rest(motion)[0], motion.tip[:, axes] - motion.tip[:, axes].mean(axis=0)
+            found["tip", 0] = float(np.linalg.norm(rest) / max(float(np.linalg.norm(swing)), _ZERO))
+        for joint in np.flatnonzero(~np.isnan(motion.reference[0])).tolist():
+            command, own = (values[:, joint] - values[:, joint].mean() for values in (motion.reference, motion.q))
+            if np.ptp(command) > _MOVES:
+                found["reference", joint] = float(np.linalg.norm(own - command) / np.linalg.norm(command))
+        return found
+
+    def tip_rest(self, motion: _Motion) -> tuple[FloatArray, FloatArray]:
+        """Return the residual of the tip, shape (3 N,), and its offsets in the frame of the tip and in the base."""
+        axes = np.flatnonzero(~np.isnan(motion.tip[0]))
+        blocks, apart = [], []
+        for q, tip in zip(motion.q, motion.tip, strict=True):
+            pin.framesForwardKinematics(self._model, self._data, q)
+            pose = self._data.oMf[self._tip]
+            blocks.append(np.hstack([pose.rotation, np.eye(3)])[axes])
+            apart.append((tip - pose.translation)[axes])
+        A, b = np.vstack(blocks), np.concatenate(apart)
+        offsets = np.linalg.lstsq(A, b, rcond=1e-6)[0]
+        return b - A @ offsets, offsets
+
+
+def _total(lacks: dict[tuple[str, int], float]) -> float:
+    return float(sum(np.log(min(lack, 10.0) + _NOISE[kind]) for (kind, _), lack in lacks.items()))
+
+
+def _best(
+    judge: _Judge, motion: _Motion, before: dict[tuple[str, int], float], meanings: Sequence[_Meaning]
+) -> tuple[list[_Meaning], _Motion]:
+    """Return the meanings that together fit clearly better, and the motion that they make."""
+    chosen: list[_Meaning] = []
+    total = _total(before)
+    while any(lack > _LEAST[kind] for (kind, _), lack in before.items()) and len(chosen) < motion.q.shape[1]:
+        tried = [
+            (_total(lacks), number)
+            for number, meaning in enumerate(meanings)
+            if not _spoils(meaning, before, lacks := judge.lacks(meaning.change(motion)))
+        ]
+        least, number = min(tried, default=(total, 0))
+        if least > total - _CLEARLY:
+            break
+        chosen.append(meanings[number])
+        motion, total = meanings[number].change(motion), least
+        meanings = [meaning for meaning in meanings if meaning is not chosen[-1]]
+        before = judge.lacks(motion)
+    return chosen, motion
+
+
+def _spoils(meaning: _Meaning, before: dict[tuple[str, int], float], after: dict[tuple[str, int], float]) -> bool:
+    """Return whether a meaning of all torques makes one of them fit worse: that of another one is wrong then."""
+    return meaning.line == _NO_GRAVITY and any(after[key] > lack + _WORSE for key, lack in before.items())
+
+
+def _meanings(model: RobotModel, recording: Recording, motion: _Motion) -> Iterator[_Meaning]:
+    joints = model.joint_names
+    columns = {signal: f"columns.{name}" for signal, name in recording.columns.items()}
+    torques = [place for place in range(len(joints)) if not np.isnan(motion.torque[0, place])]
+    moving = [place for place in range(len(joints)) if np.ptp(motion.q[:, place]) > _MOVES]
+    for place in moving:
+        name = columns[Signal("position", joints[place])]
+        sign = -1 if recording.units[name.removeprefix("columns.")].factor > 0.0 else 1
+        yield _Meaning(f"{name}: fits with the opposite sign", f"sign: {sign}", _scaled(place, -1.0))
+        for factor, unit in ((_DEGREE, "deg"), (1.0 / _DEGREE, "rad")):
+            yield _Meaning(f"{name}: fits if it is in {unit}", f"unit: {unit}", _scaled(place, factor))
+    for factor, unit in ((_DEGREE, "deg"), (1.0 / _DEGREE, "rad")):
+        whole = f"columns of positions: fit if they are in {unit}"
+        yield _Meaning(whole, f"unit: {unit}", _all_scaled(factor))
+    for one, other in combinations(range(len(joints)), 2):
+        pair = [columns[Signal("position", joints[place])] for place in (one, other)]
+        yield _Meaning(
+            f"{pair[0]} and {pair[1]}: fit if they are exchanged",
+            "each the joint of the other",
+            _exchanged(one, other, "q"),
+        )
+    for place in np.flatnonzero(~np.isnan(motion.tip[0])).tolist():
+        name = columns[Signal("tip", "xyz"[place])]
+        for factor, words, line in ((-1.0, "fits with the opposite sign", "sign: -1"), *_LENGTHS):
+            yield _Meaning(f"{name}: {words}", line, _scaled(place, factor, "tip"))
+    for place in torques:
+        name = columns[Signal("torque", joints[place])]
+        sign = -1 if recording.units[name.removeprefix("columns.")].factor > 0.0 else 1
+        yield _Meaning(f"{name}: fits with the opposite sign", f"sign: {sign}", _scaled(place, -1.0, "torque"))
+    for one, other in combinations(torques, 2):
+        pair = [columns[Signal("torque", joints[place])] for place in (one, other)]
+        yield _Meaning(
+            f"{pair[0]} and {pair[1]}: fit if they are exchanged",
+            "each the joint of the other",
+            _exchanged(one, other, "torque"),
+        )
+    if torques and recording.holds != "without_gravity":
+        whole = "columns of torques: fit if gravity is not in them"
+        yield _Meaning(whole, _NO_GRAVITY, _gravity_added(model))
+
+
+def _gravity_added(model: RobotModel) -> _Change:
+    def change(motion: _Motion) -> _Motion:
+        return replace(motion, torque=motion.torque + np.array([model.gravity_torque(q) for q in motion.q]))
+
+    return change
+
+
+def _scaled(place: int, factor: float, what: str = "q") -> _Change:
+    def change(motion: _Motion) -> _Motion:
+        factors = np.ones(getattr(motion, what).shape[1])
+        factors[place] = factor
+        return _times(motion, factors) if what == "q" else replace(motion, **{what: getattr(motion, what) * factors})
+
+    return change
+
+
+def _all_scaled(factor: float) -> _Change:
+    return lambda motion: _times(motion, np.full(motion.q.shape[1], factor))
+
+
+def _times(motion: _Motion, factors: FloatArray) -> _Motion:
+    return replace(motion, q=motion.q * factors, dq=motion.dq * factors, ddq=motion.ddq * factors)
+
+
+def _exchanged(one: int, other: int, what: str) -> _Change:
+    def change(motion: _Motion) -> _Motion:
+        order = np.arange(motion.q.shape[1])
+        order[[one, other]] = other, one
+        if what == "torque":
+            return replace(motion, torque=motion.torque[:, order])
+        return replace(motion, q=motion.q[:, order], dq=motion.dq[:, order], ddq=motion.ddq[:, order])
+
+    return change
+
+
+def _question(
+    meaning: _Meaning, joints: Sequence[str], before: dict[tuple[str, int], float], after: dict[tuple[str, int], float]
+) -> str:
+    """Return a question with the two numbers that decide: what is unexplained before and after."""
+
+    def gained(key: tuple[str, int]) -> float:
+        noise = _NOISE[key[0]]
+        return float(np.log(before[key] + noise) - np.log(after[key] + noise))
+
+    kind, joint = max(before, key=gained)
+    of = {"tip": "the tip", "torque": "the torque of ", "reference": "the commanded position of "}[kind]
+    what = of if kind == "tip" else f"{of}{joints[joint]}"
+    return (
+        f"{meaning.words}; {before[kind, joint]:.0%} of {what} is unexplained now, {after[kind, joint]:.0%} then. "
+        f"Say {meaning.line}."
+    )
+
+
+def _tip_offset(model: RobotModel, judge: _Judge, motion: _Motion) -> Iterator[str]:
+    if np.isnan(motion.tip[0]).all():
+        return
+    rest, offsets = judge.tip_rest(motion)
+    axes = ~np.isnan(motion.tip[0])
+    if np.linalg.norm(offsets) > _OFFSET and np.sqrt(np.mean(rest**2)) < max(_OFFSET, 0.1 * np.linalg.norm(offsets)):
+        tool, base = (" ".join(f"{1e3 * value:.1f}" for value in part) for part in (offsets[:3], offsets[3:]))
+        apart = np.array([(tip - model.tip_position(q))[axes] for q, tip in zip(motion.q, motion.tip, strict=True)])
+        yield (
+            f"geometry differs by {1e3 * np.sqrt(np.mean(np.sum(apart**2, axis=1))):.3g} mm: the tip is a rigid offset "
+            f"({tool}) mm in the frame {model.tip_name} and ({base}) mm in the base away. Choose the robot's tip, or "
+            "the zero of the columns"
+        )
+
+
+def _scales(judge: _Judge, motion: _Motion, recording: Recording, joints: Sequence[str]) -> Iterator[str]:
+    """Yield a question for each torque that fits the model in another unit only."""
+    rigid = judge.rigid(motion) if not np.isnan(motion.torque[0]).all() else None
+    for (kind, joint), lack in judge.lacks(motion).items():
+        if kind != "torque" or lack < _DOUBTED or rigid is None:
+            continue
+        y, model = motion.torque[:, joint], rigid[:, joint]
+        scale = float(y @ model) / max(float(model @ model), _ZERO)
+        if scale <= 0.0 or 1.0 / _OTHER_SCALE < scale < _OTHER_SCALE:
+            continue
+        speed = motion.dq[:, joint]
+        columns = np.column_stack([model, motion.ddq[:, joint], speed, np.sign(speed)])
+        then = nnls(columns, y)[1] / max(float(np.linalg.norm(y)), _ZERO)
+        if then < _HALVED * lack:
+            name = recording.columns[Signal("torque", joints[joint])]
+            yield (
+                f"columns.{name}: the torque of {joints[joint]} is {scale:.3g} times the model's; {lack:.0%} is "
+                f'unexplained now, {then:.0%} then. Say its unit; of a per cent say unit: "%" and scale.'
+            )
+
+
+def _confirmed(
+    judge: _Judge, motion: _Motion, before: dict[tuple[str, int], float], joints: Sequence[str]
+) -> Iterator[tuple[str, tuple[str, ...]]]:
+    """Yield what would contradict another sign of each joint."""
+    for place, joint in enumerate(joints):
+        turned = judge.lacks(_scaled(place, -1.0)(motion)) if before else {}
+        kinds = dict.fromkeys(kind for (kind, at), lack in turned.items() if lack > before[kind, at] + _LEAST[kind])
+        yield joint, tuple(kinds)

@@ -1,0 +1,139 @@
+"""Contradictions between the signals of a made-up log: each single inverted, exchanged or rescaled joint."""
+
+import numpy as np
+import pinocchio as pin
+import pytest
+
+from runner.config.compose.compose import compose
+from runner.config.validation import validate
+from runner.recordings.columns_map import Factor, Signal
+from runner.recordings.consistency import check_consistency
+from runner.recordings.recording import Recording
+
+T = np.arange(0.0, 8.0, 0.008)
+
+
+@pytest.fixture(scope="module")
+def arm():
+    return validate(compose(["robot=panda"])).arm.model
+
+
+def motion(model, seed=0):
+    rng = np.random.default_rng(seed)
+    lower, upper = model.usual_range
+    middle, swing = 0.5 * (lower + upper), np.minimum(0.25 * (upper - lower), 0.5)
+    rates = rng.uniform(1.0, 2.5, model.nq)
+    phases = rng.uniform(0.0, 2.0 * np.pi, model.nq)
+    return middle + swing * np.sin(np.outer(T, rates) + phases)
+
+
+def made(model, q=None, change=lambda signals: signals, kinds=("torque",), error=0.2, holds="torque"):
+    """Return a log of an arm whose masses differ from the model's, with friction and noise."""
+    q = motion(model) if q is None else q
+    rng = np.random.default_rng(1)
+    dq, ddq = np.gradient(q, T, axis=0), np.gradient(np.gradient(q, T, axis=0), T, axis=0)
+    other = model.pin_model.copy()
+    for joint in range(1, other.njoints):
+        inertia = other.inertias[joint]
+        other.inertias[joint] = pin.Inertia(inertia.mass * (1.0 + error), inertia.lever, inertia.inertia)
+    data = other.createData()
+    torque = np.array([pin.rnea(other, data, *row) for row in zip(q, dq, ddq, strict=True)])
+    torque += 1.0 * dq + 0.5 * np.sign(dq) + 0.05 * rng.normal(size=q.shape)
+    if holds == "without_gravity":
+        torque -= np.array([model.gravity_torque(row) for row in q])
+    signals = {Signal("position", name): q[:, place] for place, name in enumerate(model.joint_names)}
+    if "torque" in kinds:
+        signals |= {Signal("torque", name): torque[:, place] for place, name in enumerate(model.joint_names)}
+    if "tip" in kinds:
+        tips = np.array([model.tip_position(row) for row in q])
+        signals |= {Signal("tip", axis): tips[:, place] for place, axis in enumerate("xyz")}
+    if "reference" in kinds:
+        signals |= {Signal("reference", n): q[:, j] + 0.002 for j, n in enumerate(model.joint_names)}
+    signals = change(dict(signals))
+    columns = {signal: signal.words.replace(" ", "_") for signal in signals}
+    return Recording(None, T, signals, columns, {name: Factor(1.0, "rad") for name in columns.values()}, False, [])
+
+
+def position(model, joint):
+    return Signal("position", model.joint_names[joint])
+
+
+def scaled(signal, factor):
+    return lambda signals: {**signals, signal: factor * signals[signal]}
+
+
+def exchanged(one, other):
+    return lambda signals: {**signals, one: signals[other], other: signals[one]}
+
+
+@pytest.mark.costs(2)
+@pytest.mark.parametrize("kinds", [("torque",), ("tip",), ("reference",), ("torque", "tip", "reference")])
+def test_a_right_log_is_not_doubted(arm, kinds):
+    verdict = check_consistency(arm, made(arm, kinds=kinds))
+    assert verdict.questions == ()
+    assert verdict.notes == ()
+
+
+@pytest.mark.costs(3)
+@pytest.mark.parametrize("joint", range(7))
+def test_an_inverted_joint_is_asked_for(arm, joint):
+    (question,) = check_consistency(arm, made(arm, change=scaled(position(arm, joint), -1.0))).questions
+    assert f"of_joint{joint + 1}: fits with the opposite sign" in question
+    assert question.endswith("Say sign: -1.")
+
+
+@pytest.mark.costs(3)
+@pytest.mark.parametrize(("kinds", "joints"), [(("tip",), range(5)), (("reference",), range(7))])
+def test_an_inverted_joint_is_told_by_the_tip_and_by_commands(arm, kinds, joints):
+    for joint in joints:
+        (question,) = check_consistency(
+            arm, made(arm, kinds=kinds, change=scaled(position(arm, joint), -1.0))
+        ).questions
+        assert f"of_joint{joint + 1}: fits with the opposite sign" in question
+
+
+@pytest.mark.costs(3)
+def test_an_exchanged_pair_is_asked_for(arm):
+    for one, other in ((0, 1), (1, 3), (4, 5)):
+        (question,) = check_consistency(
+            arm, made(arm, change=exchanged(position(arm, one), position(arm, other)))
+        ).questions
+        assert f"of_joint{one + 1} and columns.position_of_joint{other + 1}: fit if they are exchanged" in question
+
+
+@pytest.mark.costs(3)
+def test_torques_of_another_meaning_are_asked_for(arm):
+    name = arm.joint_names[1]
+    for change, wanted in (
+        (scaled(Signal("torque", name), -1.0), "opposite sign"),
+        (scaled(Signal("torque", name), 1.0 / 0.87), None),
+        (scaled(Signal("torque", name), 0.05), "times the model's"),
+        (scaled(Signal("torque", name), 0.0), "is 0 in all rows"),
+    ):
+        questions = check_consistency(arm, made(arm, change=change)).questions
+        assert [wanted in question for question in questions] == ([True] if wanted else [])
+    (question,) = check_consistency(arm, made(arm, holds="without_gravity")).questions
+    assert question.startswith("columns of torques: fit if gravity is not in them")
+    assert question.endswith("Say holds: without_gravity.")
+
+
+def test_degrees_are_asked_for(arm):
+    def degrees(signals):
+        return {s: v * 180.0 / np.pi if s.kind == "position" else v for s, v in signals.items()}
+
+    (question,) = check_consistency(arm, made(arm, kinds=("reference",), change=degrees)).questions
+    assert "columns of positions: fit if they are in deg" in question
+
+
+def test_a_rigid_offset_of_the_tip_is_geometry(arm):
+    verdict = check_consistency(arm, made(arm, kinds=("tip",), change=lambda s: {
+        **s, Signal("tip", "z"): s[Signal("tip", "z")] + 0.01
+    }))  # fmt: skip
+    assert verdict.questions == ()
+    assert verdict.notes[0].startswith("geometry differs by 10 mm: ")
+
+
+def test_an_arm_that_stands_still_is_refused(arm):
+    still = np.tile(motion(arm)[0], (len(T), 1))
+    (question,) = check_consistency(arm, made(arm, still, kinds=())).questions
+    assert question.startswith("the arm stands still")

@@ -1,0 +1,93 @@
+"""The built-in control laws by their properties, with overrides of a run of each: for tests, tables and timings.
+
+Each list of laws is a choice from LAWS by a property, so that a new law of the registry is in all lists that it fits.
+"""
+
+from dataclasses import dataclass
+
+from runner.controllers import CONTROLLERS
+
+OWN_OPTIONS = {
+    "adaptive": ("scale=uniform", "friction=false", "adaptation_gain=1e-3"),
+    "computed_torque": ("integral_gain=100",),
+    "joint_pd": ("inertia=posture",),
+    "joint_pid": ("integral_share=0.5", "anti_windup=false"),
+    "passivity": (),
+    "sliding_mode": ("boundary_layer=0.1", "switching_gain=2"),
+}
+"""Options of each law of JOINT_LAWS that the others lack, away from their defaults."""
+
+
+@dataclass(frozen=True)
+class Law:
+    """A built-in control law.
+
+    Attributes:
+        name: Its kind.
+        keys: Keys of its config.
+        follows_joints: True if it follows a desired joint motion.
+        takes_drawn: True if it takes nominal models that are drawn as arrays.
+        commands_torques: True if it commands torques; False if joint positions.
+    """
+
+    name: str
+    keys: frozenset[str]
+    follows_joints: bool
+    takes_drawn: bool
+    commands_torques: bool
+
+    @property
+    def periodic(self) -> bool:
+        """True if it needs a motion that repeats."""
+        return "repeats_every" in self.keys
+
+    @property
+    def flexible(self) -> bool:
+        """True if it needs flexible joints."""
+        return "joint_stiffness" in self.keys
+
+    @property
+    def in_stages(self) -> bool:
+        """True if it needs an arm mounted on another one."""
+        return "macro_target" in self.keys
+
+    @property
+    def moves_the_whole_arm(self) -> bool:
+        """True if it moves all joints of any arm along the desired motion, those of the null space to a posture."""
+        return "null_space_frequency" in self.keys and "actuated_stages" not in self.keys
+
+    @property
+    def overrides(self) -> tuple[str, ...]:
+        """Overrides of a run, without its plant."""
+        robot = "combined" if self.in_stages else "macro" if self.commands_torques else "xarm7"
+        motion = ("trajectory=circle", "trajectory.easing=none", "duration=14") if self.periodic else ()
+        joints = ("plant.flexible_joints.static_deflection=unknown",) if self.flexible else ()
+        return (f"robot={robot}", f"controller={self.name}", *motion, *joints)
+
+    def plant(self, engine: str) -> str:
+        """Return the plant of an engine, such as "rk4", that the law needs."""
+        return f"{engine}_flexible" if self.flexible else engine
+
+
+def _laws() -> dict[str, Law]:
+    found = {}
+    for name in CONTROLLERS.names():
+        if CONTROLLERS.module(name).__name__.startswith("runner.controllers."):
+            features = CONTROLLERS.features(name)
+            keys = frozenset(CONTROLLERS.config_model(name).model_fields)
+            torques = features.COMMANDS == "torque"
+            found[name] = Law(name, keys, features.FOLLOWS_JOINTS, features.TAKES_DRAWN, torques)
+    return found
+
+
+LAWS = _laws()
+"""All built-in laws, by name."""
+ARM_LAWS = tuple(
+    sorted(
+        (law.name for law in LAWS.values() if law.moves_the_whole_arm and not (law.periodic or law.flexible)),
+        key=lambda name: (LAWS[name].follows_joints, name),
+    )
+)
+"""Laws of any arm with rigid joints and of any motion: first those that lead the tip, then those of the joints."""
+JOINT_LAWS = tuple(name for name in ARM_LAWS if LAWS[name].follows_joints)
+"""Those of them that follow a joint motion."""
