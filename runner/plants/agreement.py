@@ -22,7 +22,6 @@ _LEAST = 1e-12  # kg and kg m^2, of MuJoCo's moving links, as in conf/plant/mujo
 _DISTANCE = 1e-2  # rad or m from a stop, on both sides; at most a hundredth of the range
 _OUTWARDS = 0.1  # rad/s or m/s, there
 _STOPPED = 1.0  # rad/s^2 or m/s^2: least acceleration of a stop, which without it is zero
-_TICKS = 500  # of the compiled step
 _SPEED = 1.0  # rad/s or m/s: change of speed in one of its ticks by the random torques, at most
 _SAME = 1e-6  # of axes, origins in m, and moments of inertia
 
@@ -65,7 +64,9 @@ def compare(kind: str, urdf: str, model: RobotModel, samples: int, generator: np
         plant.close()
 
 
-def has_bits_of_bullet(urdf: str, model: RobotModel, arm: BulletArm, generator: np.random.Generator) -> bool:
+def has_bits_of_bullet(
+    urdf: str, model: RobotModel, arm: BulletArm, ticks: int, generator: np.random.Generator
+) -> bool:
     """Return True if the compiled step of an arm has the bits of PyBullet under random torques; -0 is equal to 0.
 
     Half of the ticks begin with a reset of PyBullet to the state of the step, as in a hand-over. Where a joint reaches
@@ -75,6 +76,7 @@ def has_bits_of_bullet(urdf: str, model: RobotModel, arm: BulletArm, generator: 
         urdf: Canonical text of the arm.
         model: Model of the arm.
         arm: The arm as Bullet has it.
+        ticks: Number of ticks.
         generator: Generator of states and torques.
 
     Raises:
@@ -87,8 +89,8 @@ def has_bits_of_bullet(urdf: str, model: RobotModel, arm: BulletArm, generator: 
     try:
         state = np.concatenate(_random_state(model, generator)[:2])
         plant.reset(state[:n], state[n:])
-        for tick in range(_TICKS):
-            if tick == _TICKS // 2:
+        for tick in range(ticks):
+            if tick == ticks // 2:
                 plant.set_gravity(gravity := generator.uniform(-10.0, 10.0, 3))
                 code.set_gravity(gravity)
             q, dq = state[:n], state[n:]
@@ -101,7 +103,7 @@ def has_bits_of_bullet(urdf: str, model: RobotModel, arm: BulletArm, generator: 
             plant.advance(tau)
             if not (np.array_equal(plant.q, state[:n]) and np.array_equal(plant.dq, state[n:])):
                 return False
-            if tick >= _TICKS // 2:
+            if tick >= ticks // 2:
                 plant.reset(state[:n], state[n:])
         return True
     finally:

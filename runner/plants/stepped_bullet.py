@@ -13,7 +13,7 @@ from runner.base.arrays import FloatArray
 from runner.base.errors import SimulationError
 from runner.plants.agreement import has_bits_of_bullet
 from runner.plants.bullet_links import read_arm
-from runner.plants.compiled_bullet import CompiledBullet
+from runner.plants.compiled_bullet import CompiledBullet, bullet_pattern
 from runner.plants.decoupled import BulletMotion
 from runner.plants.plant import Plant
 from runner.robots.description import find_urdf, read_urdf
@@ -24,6 +24,7 @@ from runner.symbolic.cache import read_answer, write_answer
 from runner.symbolic.engine import MOST_JOINTS, evaluator, processor
 from runner.symbolic.program import source_digest
 
+_TICKS, _FEWER = 500, 50  # that are compared, and if another arm with the same code was equal
 _WHEEL = "3.2.7"  # of PyBullet, with the Bullet of the compiled step
 
 
@@ -167,12 +168,17 @@ def _is_trusted(urdf: str, model: RobotModel, arm: BulletArm) -> bool:
     if not engines.has_pybullet():
         _tell("PyBullet is not installed: the step of plant=bullet is not compared on this machine")
         return True
-    parts = [urdf, engines.installed_versions(("llvmlite", "pybullet")), processor(), source_digest()]
-    key = f"step-{hashlib.sha256(json.dumps(parts).encode()).hexdigest()}"
-    found = read_answer(key)
+    about = engines.installed_versions(("llvmlite", "pybullet")), processor(), source_digest()
+    own, alike = (
+        f"step-{hashlib.sha256(json.dumps([text, *about]).encode()).hexdigest()}"
+        for text in (urdf, bullet_pattern(arm, model))
+    )
+    found = read_answer(own)
     if not isinstance(found, bool):
-        found = has_bits_of_bullet(urdf, model, arm, np.random.default_rng(0))
-        write_answer(key, found)
+        ticks = _FEWER if read_answer(alike) is True else _TICKS
+        found = has_bits_of_bullet(urdf, model, arm, ticks, np.random.default_rng(0))
+        for key in (own, alike):
+            write_answer(key, found)
     if not found:
         _tell("the compiled step of plant=bullet differs from the installed PyBullet, which moves the arm")
     return found

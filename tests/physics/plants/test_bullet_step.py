@@ -145,14 +145,27 @@ def test_a_step_with_other_bits_is_not_used(checked_config, monkeypatch, capsys)
     stepped_bullet.find_arm.cache_clear()
 
 
+def test_an_arm_with_code_that_was_compared_takes_fewer_ticks(checked_config, monkeypatch):
+    kept, ticks = {}, []
+    monkeypatch.setattr(stepped_bullet, "read_answer", kept.get)
+    monkeypatch.setattr(stepped_bullet, "write_answer", kept.__setitem__)
+    monkeypatch.setattr(stepped_bullet, "has_bits_of_bullet", lambda *given: ticks.append(given[3]) or True)
+    for payload in ("0.1", "0.2", "0.1"):
+        arm = checked_config("robot=ur5e", f"robot.payload.mass={payload}").arm
+        stepped_bullet.find_arm.cache_clear()
+        assert find_step(arm.urdf, arm.model, STEP, 2) is not None
+    assert ticks == [500, 50]
+    stepped_bullet.find_arm.cache_clear()
+
+
 def test_the_judge_finds_a_wrong_bit(checked_config, monkeypatch):
     from runner.plants.agreement import has_bits_of_bullet
 
     arm = checked_config("robot=macro").arm
     own = read_arm(arm.urdf, arm.model.joint_names)
-    assert has_bits_of_bullet(arm.urdf, arm.model, own, np.random.default_rng(0))
+    assert has_bits_of_bullet(arm.urdf, arm.model, own, 50, np.random.default_rng(0))
     wrong = [link._replace(mass=np.nextafter(link.mass, 9.0).item()) for link in own.links]
-    assert not has_bits_of_bullet(arm.urdf, arm.model, own._replace(links=wrong), np.random.default_rng(0))
+    assert not has_bits_of_bullet(arm.urdf, arm.model, own._replace(links=wrong), 50, np.random.default_rng(0))
 
 
 def test_ticks_that_bullet_does_not_divide_as_asked_are_left_to_it():
