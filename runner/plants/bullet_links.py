@@ -35,6 +35,7 @@ def bullet_text(urdf: str) -> str:
             turn_to_principal_axes(link)
         elif (origin := link.find("inertial/origin")) is not None:
             origin.attrib.pop("rpy", None)
+    ET.indent(root)  # Bullet breaks names and numbers in long lines
     return ET.tostring(root, encoding="unicode")
 
 

@@ -78,7 +78,7 @@ def test_few_are_kept(servers_before, macro_urdf):
 
 
 def test_a_urdf_that_bullet_refuses_leaves_none(servers_before, macro_urdf):
-    with pytest.raises(ConfigError, match="PyBullet does not take it"):
+    with pytest.raises(ConfigError, match="PyBullet does not accept it"):
         SERVERS.open(macro_urdf.replace("<mass", "<mess"))
     assert connected() == servers_before
 
