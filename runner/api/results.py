@@ -79,8 +79,8 @@ def compare(
     """Compare runs or sweeps with the first of them, and return the statistics that `runner compare` prints.
 
     Repetitions with equal seeds are compared in pairs. Sweeps are compared in the cells that both have. The columns are
-    first and second (A for the first argument, B for the second and so on), then those of `Sweep.compare`; `summary`
-    has the answers in words.
+    those of `Sweep.compare`, with A for the first argument, B for the second and so on; `summary` has the answers in
+    words.
 
         >>> common = ("robot=macro", "noise=thesis", "duration=0.1", "repetitions=6")
         >>> runs = [runner.run(*common, controller__damping_ratio=ratio) for ratio in (1.0, 0.7)]

@@ -165,13 +165,14 @@ class Sweep(store.Sweep):
         from runner.reporting.comparison.sweeps import compare_levels
         from runner.sweeps.finer_step import work_out_sweep
 
+        names = self._names(metrics)  # raises an error if runs are missing
         work_out_sweep(self)
         self.__dict__.pop("_measurements", None)  # measured before the finer step was simulated
         inside = [within] if isinstance(within, str) else within
         asked = by or getattr(find_question(self._axes, self.question), "name", "")
         if not asked:
             raise RunnerError(f"by: all axes are conditions. Allowed: {', '.join(axis.name for axis in self._axes)}.")
-        return comparison(compare_levels(self._measurements, asked, inside, self._names(metrics) if metrics else ()))
+        return comparison(compare_levels(self._measurements, asked, inside, names if metrics else ()))
 
     def __repr__(self) -> str:
         told = _progress_text(find_status(self))

@@ -1,6 +1,5 @@
 """Checks of an arm's joints and links: types, limits, vectors, masses, moments of inertia and mesh files."""
 
-import contextlib
 import math
 import xml.etree.ElementTree as ET
 from collections.abc import Collection, Iterator, Sequence
@@ -16,6 +15,7 @@ from runner.robots.joint_dynamics import hold, rest_position
 from runner.robots.tree import UrdfTree
 
 _NONE = repr(NO_LIMIT)
+_NOT_FOUND = "not found"
 _DENSEST = 2e4  # kg/m^3, of metals
 _SMALLEST_PART = 0.3  # of the lengths of all links: the least size of a link for its density
 
@@ -177,8 +177,11 @@ def check_meshes(tree: UrdfTree, urdf: Path, packages: Sequence[Path]) -> list[F
     names = list(dict.fromkeys(mesh.get("filename", "") for link in tree.links.values() for mesh in link.iter("mesh")))
     wrong: dict[str, list[str]] = {}
     for name in names:
-        with contextlib.suppress(OSError, RuntimeError):  # a name that is too long, links in a circle
-            wrong.setdefault(_wrong(name, urdf.resolve().parent, packages), []).append(quoted(name))
+        try:
+            said = _wrong(name, urdf.resolve().parent, packages)
+        except (OSError, RuntimeError):  # a name that is too long, links in a circle
+            said = _NOT_FOUND
+        wrong.setdefault(said, []).append(quoted(name))
     findings = []
     for said, found in wrong.items():
         hint = "--package-path DIR names a folder with its package; " if "package://" in found[0] else ""
@@ -200,7 +203,7 @@ def _wrong(name: str, folder: Path, packages: Sequence[Path]) -> str:
             return "outside of the folder of its URDF or package"
         if path.is_file():
             return ""
-    return "not found"
+    return _NOT_FOUND
 
 
 def _package_folders(folder: Path, package: str, packages: Sequence[Path]) -> Iterator[Path]:

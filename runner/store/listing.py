@@ -111,7 +111,7 @@ def remove(entries: Sequence[Entry]) -> None:
         try:
             shutil.rmtree(entry.folder)
         except OSError as error:
-            raise StoreError(f"cannot remove {entry.folder}: {error.strerror or error}") from error
+            raise StoreError(f"cannot remove {entry.folder}: {error.strerror or error.args[0]}") from error
 
 
 def _entries(kind: Kind, folder: Path) -> Iterator[Entry]:

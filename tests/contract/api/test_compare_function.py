@@ -41,9 +41,9 @@ def test_runs_are_compared_with_the_first_one(runs, cli):
 
 def test_sweeps_are_compared_in_the_cells_that_both_have(sweeps, runs):
     found = runner.compare(*sweeps, metrics="peak_torque")
-    assert list(found.columns) == COLUMNS
-    assert found["n"].tolist() == [6]  # two cells share the six draws
-    assert found.summary.startswith("Largest torque: ")
+    assert list(found.columns) == ["robot", *COLUMNS]
+    assert found[["robot", "n"]].to_numpy().tolist() == [["macro", 6], ["mini", 6]]  # no number describes both
+    assert found.summary == "6 pairs are too few for 3 comparisons: 7 would do."
     whole = runner.compare(*sweeps)
     assert len(whole) > 10
     assert "peak_torque" in set(whole["metric"])

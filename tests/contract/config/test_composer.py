@@ -198,6 +198,7 @@ def test_a_value_mends_a_file_that_refers_to_itself(own):
     assert compose(line, [own]) == plain(line, [own])
 
 
+@pytest.mark.bullet
 def test_default_stands_for_the_plant_that_is_installed(monkeypatch):
     for found in (True, False, True):
         monkeypatch.setattr(engines, "has_pybullet", lambda found=found: found)

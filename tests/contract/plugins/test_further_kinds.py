@@ -86,6 +86,7 @@ def test_no_option_is_without_effect_and_untold(folder):
 IDEAL = {"rk4": "", "kinematic": " ideal"}
 
 
+@pytest.mark.bullet
 @pytest.mark.costs(10)
 def test_every_kind_and_key_has_a_scene_that_changes_it(monkeypatch):
     """A new kind or key needs one in `tools/option_walk/scenes.py`."""

@@ -5,12 +5,15 @@ import pytest
 from support.arms import checked, model_of, urdf_of
 
 from runner.base.errors import ConfigError
-from runner.plants.bullet import LinksTorque
 from runner.plants.mujoco import Mujoco
 from runner.plants.rk4 import Rk4
 from runner.simulation.assembly import assemble
 from runner.simulation.loop import simulate
 from runner.simulation.sensors import make_encoders
+
+pytest.importorskip("pybullet", reason="PyBullet is not installed")
+
+from runner.plants.bullet import LinksTorque
 
 GEARED = ("robot=xarm7", "robot.armature=assumed", "controller=computed_torque", "trajectory=quintic",
           "trajectory.duration=0.5", "duration=0.6", "controller.period=0.002", "plant.step=0.001")  # fmt: skip

@@ -16,7 +16,7 @@ from runner.simulation.run import simulate_repetition
 from runner.store.identity import run_hash
 
 
-@pytest.fixture(params=[True, False], ids=["with PyBullet", "without"])
+@pytest.fixture(params=[pytest.param(True, marks=pytest.mark.bullet), False], ids=["with PyBullet", "without"])
 def installed(request, monkeypatch):
     """A machine with PyBullet, or without."""
     monkeypatch.setattr(engines, "has_pybullet", lambda: request.param)

@@ -23,7 +23,7 @@ def test_arithmetic(expression, value):
     [
         ("mas / 2", r"no name 'mas' \(did you mean mass\?\); names: round, mass, word"),
         ("word * 2", "cannot compute with str and int"),
-        ("mass / 0", "has no value: float division by zero"),
+        ("mass / 0", "has no value: .*division by zero"),
         ("2 ** 63", "has no value"),
         ("__import__('os')", "no name '__import__'"),
         ("word.upper()", "has no 'upper'"),
