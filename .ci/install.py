@@ -113,7 +113,7 @@ def describe(version: tuple, python: str, chosen: bool) -> str:
     if version <= WHEELS_OF_PYBULLET:
         what = "PyBullet has a wheel for it"
     else:
-        what = "PyBullet has no wheel for it and is left out, so that plant=mujoco is the default"
+        what = "PyBullet has no wheel for it and is left out; plant=bullet is compiled"
     return f"Python {dotted(version)} ({python}){why}: {what}"
 
 

@@ -1,4 +1,4 @@
-"""Numerical engines: PyBullet availability, installed versions, the default plant, and settings of the environment."""
+"""Numerical engines: PyBullet availability, installed versions, and settings of the environment."""
 
 import contextlib
 import logging
@@ -8,8 +8,6 @@ from collections.abc import Iterable
 from importlib.util import find_spec
 
 _WHEELS = (3, 11)  # newest Python version with PyBullet wheels
-STAND_IN = "mujoco_fallback"
-"""Option of the group plant that replaces bullet if PyBullet is missing."""
 
 
 def has_pybullet() -> bool:
@@ -28,13 +26,8 @@ def installed_versions(names: Iterable[str]) -> dict[str, str]:
     return found
 
 
-def default_plant() -> str:
-    """Return the option of the group plant that `default` selects on this machine."""
-    return "bullet" if has_pybullet() else STAND_IN
-
-
 def bullet_missing() -> str:
-    """Return the error message for plant=bullet without PyBullet, with a remedy."""
+    """Return the error message for plant=bullet where only PyBullet can move the arm, with a remedy."""
     found = platform.python_version_tuple()[:2]
     built = (
         ""
@@ -43,7 +36,7 @@ def bullet_missing() -> str:
         f"{'.'.join(map(str, _WHEELS))} has"
     )
     return (
-        "plant.kind: bullet needs PyBullet, which is not installed; take plant=mujoco, or install it by "
+        "plant.kind: bullet needs PyBullet for this arm, which is not installed; take plant=mujoco, or install it by "
         f"`pip install pybullet`{built}"
     )
 

@@ -25,7 +25,6 @@ KEYS: dict[str, str] = {
 VALUES: dict[str, dict[str, str]] = {
     "preset": {"sound": "full_equations"},
     "environment": {"hand": "hand_guiding"},
-    "plant": {"mujoco_for_bullet": "mujoco_fallback"},
 }
 """Present name of each former option, by config group."""
 

@@ -1,4 +1,4 @@
-"""Pinocchio, eigenpy and parts of SciPy, imported on first use, because checks of a config do not need them.
+"""Pinocchio, eigenpy, PyBullet and parts of SciPy, imported on first use, because checks of a config do not need them.
 
 eigenpy is Pinocchio's interface to Eigen. Its factorisations of small matrices have the same bits on every x86-64
 processor; those of NumPy and SciPy do not.
@@ -8,9 +8,12 @@ from collections.abc import Callable
 from types import ModuleType
 from typing import TYPE_CHECKING, Any
 
+from runner.base.engine_output import quiet_stderr
+
 if TYPE_CHECKING:
     import eigenpy as eigen
     import pinocchio as pin
+    import pybullet
     from scipy import interpolate as splines
     from scipy.linalg import lapack
 else:
@@ -42,6 +45,12 @@ else:
 
         return eigenpy
 
+    def _pybullet() -> ModuleType:
+        with quiet_stderr():  # it prints its build time
+            import pybullet
+
+        return pybullet
+
     def _interpolate() -> ModuleType:
         from scipy import interpolate
 
@@ -53,6 +62,6 @@ else:
         return lapack
 
     pin, eigen = _LazyModule(_pinocchio), _LazyModule(_eigenpy)
-    splines, lapack = _LazyModule(_interpolate), _LazyModule(_lapack)
+    pybullet, splines, lapack = _LazyModule(_pybullet), _LazyModule(_interpolate), _LazyModule(_lapack)
 
-__all__ = ["eigen", "lapack", "pin", "splines"]
+__all__ = ["eigen", "lapack", "pin", "pybullet", "splines"]

@@ -10,7 +10,6 @@ from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from runner.base import engines
 from runner.base.errors import RunnerError, unknown
 from runner.base.former_names import TOPICS as FORMER_TOPICS
 from runner.base.paths import studies_with
@@ -50,8 +49,7 @@ def _topic(group: str) -> str:
 
 
 def _list_plants(config_dirs: Sequence[Path]) -> dict[str, str]:
-    found = group_options("plant", config_dirs)
-    return found if engines.has_pybullet() else {**found, "bullet": f"PyBullet is not installed: {found['bullet']}"}
+    return group_options("plant", config_dirs)
 
 
 def _list_metrics(_: Sequence[Path]) -> dict[str, str]:

@@ -116,7 +116,6 @@ THRESHOLDS: Mapping[str, tuple[str, Any, str]] = {
         PositiveFloat,
         "Allowed length of three time constants of the slowest part of the control law, as a fraction of the run.",
     ),
-    "default_plant": ("replaced", _Share, "0 reports it, 1 does not."),
     "robot_file": ("left_out", NonNegativeFloat, "Allowed number of ignored elements that affect the motion."),
     "plant_error": (
         "share",

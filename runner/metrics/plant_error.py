@@ -21,7 +21,7 @@ PARTED = 4.0
 """Distance of the tips, in settling bands, beyond which two motions have parted. In runs of studies, the distance is at
 most 3 bands if no torque is at its limit, and 4.9 or more, mostly 10 to 55, if the motions take different paths."""
 _WALL = "it is of fourth order only in smooth motion, and here the tip may meet a wall"
-_NOT_OF_RK4 = ("integrator", "min_inertia", "in_place_of")
+_NOT_OF_RK4 = ("integrator", "min_inertia")
 
 Metrics = Mapping[str, float | None]
 

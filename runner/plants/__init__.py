@@ -2,14 +2,12 @@
 
 from collections.abc import Callable
 from dataclasses import dataclass
-from types import ModuleType
 from typing import Any, Literal, Protocol
 
 import numpy as np
 
-from runner.base import engines
 from runner.base.arrays import FloatArray
-from runner.base.errors import ConfigError, SimulationError
+from runner.base.errors import SimulationError
 from runner.plants.computation import EXACT, ComputationConfig
 from runner.plants.decoupled import Motion
 from runner.plants.flexible_config import FlexibleJointsConfig
@@ -40,14 +38,12 @@ class PlantOptions:
         computation: Delay and misses of commands.
         flexible_joints: Springs between motors and links; None for rigid joints.
         servo: Position servos of a torque plant, for controllers that command joint positions; None without servos.
-        in_place_of: Missing kind that the plant replaces; None if no kind is missing.
     """
 
     wrist_rotation: Literal["real", "parallel"] = "real"
     computation: ComputationConfig = EXACT
     flexible_joints: FlexibleJointsConfig | None = None
     servo: ServoConfig | None = None
-    in_place_of: str | None = None
 
 
 def options_of(config: PlantConfig) -> PlantOptions:
@@ -64,9 +60,9 @@ class PlantFeatures(Features):
             end of the step.
         default_step: Function of the control tick, in s, and the number of stages. It returns the integration step, in
             s, for a config without step.
-        motion: Function of the config and the robot. It returns the rigid bodies with friction that the plants
-            integrate by the classical Runge-Kutta scheme, or None if the plants model more. Runs of such bodies may be
-            compiled.
+        motion: Function of the config, the robot, the step in s, and the steps in a tick. It returns the motion of the
+            plants for compiled runs: rigid bodies with friction by the classical Runge-Kutta scheme, or an arm by
+            Bullet's step. It returns None if the plants move otherwise.
         modes: Function of the config, the robot and a configuration. It returns the modes of a flexible robot with its
             motors held, by frequency; see find_modes.
         moves_exactly: Function of the config. It returns True if a step integrates positions exactly under a constant
@@ -75,7 +71,7 @@ class PlantFeatures(Features):
 
     IMPLICIT_CONTACT: bool = False
     default_step: Callable[[float, int], float] = lambda tick, stages: tick
-    motion: Callable[[Any, Robot], Motion | None] = lambda config, robot: None
+    motion: Callable[[Any, Robot, float, int], Motion | None] = lambda config, robot, step, steps_per_tick: None
     modes: Callable[[Any, Robot, FloatArray], list[Mode]] = lambda config, robot, q: []
     moves_exactly: Callable[[Any], bool] = lambda config: False
 
@@ -127,27 +123,13 @@ class Plants(Registry[PlantConfig, [Robot, float, int], Plant]):
         """Return the optional members of a kind's module."""
         return read_features(PlantFeatures, self.module(kind))
 
-    def names(self) -> list[str]:
-        """Return the known kinds, without bullet if PyBullet is missing; see Kinds."""
-        return [kind for kind in super().names() if kind != "bullet" or engines.has_pybullet()]
-
-    def module(self, kind: str) -> ModuleType:
-        """Return the module of a kind.
-
-        Raises:
-            ConfigError: see Kinds; also for bullet if PyBullet is missing.
-        """
-        if kind == "bullet" and not engines.has_pybullet():
-            raise ConfigError(engines.bullet_missing())
-        return super().module(kind)
-
-    def motion(self, config: PlantConfig, robot: Robot) -> Motion | None:
-        """Return the motion that a plant integrates by the Runge-Kutta scheme, or None; see PlantFeatures.
+    def motion(self, config: PlantConfig, robot: Robot, step: float, steps_per_tick: int) -> Motion | None:
+        """Return the motion of a plant for compiled runs, or None; see PlantFeatures.
 
         Raises:
             ConfigError: see find_motion.
         """
-        return self.features(config.kind).motion(config, robot)
+        return self.features(config.kind).motion(config, robot, step, steps_per_tick)
 
     def modes(self, config: PlantConfig, robot: Robot, q: FloatArray) -> list[Mode]:
         """Return the modes of a plant about a configuration, motors held; none if it is rigid."""

@@ -1,4 +1,4 @@
-"""Agreement of PyBullet and MuJoCo with Pinocchio on an arm: short steps at random states, and the stops."""
+"""Agreement of engines on an arm: PyBullet and MuJoCo with Pinocchio, and the compiled step with PyBullet."""
 
 from collections.abc import Iterator
 from typing import TYPE_CHECKING, NamedTuple
@@ -6,7 +6,9 @@ from typing import TYPE_CHECKING, NamedTuple
 import numpy as np
 
 from runner.base.arrays import FloatArray
+from runner.plants.compiled_bullet import CompiledBullet
 from runner.robots.model import RobotModel
+from runner.symbolic.bullet_step import BulletArm
 
 if TYPE_CHECKING:
     from runner.plants.bullet import Bullet
@@ -20,6 +22,7 @@ _LEAST = 1e-12  # kg and kg m^2, of MuJoCo's moving links, as in conf/plant/mujo
 _DISTANCE = 1e-2  # rad or m from a stop, on both sides; at most a hundredth of the range
 _OUTWARDS = 0.1  # rad/s or m/s, there
 _STOPPED = 1.0  # rad/s^2 or m/s^2: least acceleration of a stop, which without it is zero
+_SPEED = 1.0  # rad/s or m/s: change of speed in one of its ticks by the random torques, at most
 _SAME = 1e-6  # of axes, origins in m, and moments of inertia
 
 
@@ -57,6 +60,52 @@ def compare(kind: str, urdf: str, model: RobotModel, samples: int, generator: np
         if off < _AGREE:
             return Agreement(off, next(_wrong_stops(kind, plant, model), ""))
         return Agreement(off, _first_difference(ENGINES[kind], plant, model))
+    finally:
+        plant.close()
+
+
+def has_bits_of_bullet(
+    urdf: str, model: RobotModel, arm: BulletArm, ticks: int, generator: np.random.Generator
+) -> bool:
+    """Return True if the compiled step of an arm has the bits of PyBullet under random torques; -0 is equal to 0.
+
+    Half of the ticks begin with a reset of PyBullet to the state of the step, as in a hand-over. Where a joint reaches
+    a limit, both start from another state.
+
+    Args:
+        urdf: Canonical text of the arm.
+        model: Model of the arm.
+        arm: The arm as Bullet has it.
+        ticks: Number of ticks.
+        generator: Generator of states and torques.
+
+    Raises:
+        ConfigError: if PyBullet cannot load the text.
+    """
+    from runner.plants.bullet import Bullet
+
+    step = 10.0 * _STEP
+    code, plant, n = CompiledBullet(model, arm, step), Bullet(urdf, model, step, 1), model.nq
+    try:
+        state = np.concatenate(_random_state(model, generator)[:2])
+        plant.reset(state[:n], state[n:])
+        for tick in range(ticks):
+            if tick == ticks // 2:
+                plant.set_gravity(gravity := generator.uniform(-10.0, 10.0, 3))
+                code.set_gravity(gravity)
+            q, dq = state[:n], state[n:]
+            pushed = generator.uniform(-1.0, 1.0, n) * _SPEED / step - dq / (10.0 * step)
+            tau = model.gravity_torque(q) + np.diagonal(model.mass_matrix(q)) * pushed
+            if not code.advance(state, tau, 1):
+                state[:] = np.concatenate(_random_state(model, generator)[:2])
+                plant.reset(state[:n], state[n:])
+                continue
+            plant.advance(tau)
+            if not (np.array_equal(plant.q, state[:n]) and np.array_equal(plant.dq, state[n:])):
+                return False
+            if tick >= ticks // 2:
+                plant.reset(state[:n], state[n:])
+        return True
     finally:
         plant.close()
 

@@ -1,20 +1,23 @@
 """PyBullet plant: Featherstone's articulated-body algorithm with semi-implicit Euler integration."""
 
 import struct
+from dataclasses import replace
 from typing import Literal
 
 import numpy as np
 
+from runner.base import engines
 from runner.base.arrays import FloatArray
-from runner.base.engine_output import quiet_stderr
-from runner.base.lazy_modules import pin
+from runner.base.errors import ConfigError
+from runner.base.lazy_modules import pin, pybullet
 from runner.plants.bullet_servers import SERVERS
 from runner.plants.compiled_motion import CompiledLinksTorque
-from runner.plants.decoupled import TorquePlantConfig, assemble_flexible, assemble_plant
+from runner.plants.decoupled import Motion, TorquePlantConfig, assemble_flexible, assemble_plant, find_motion
 from runner.plants.decoupled import default_step as default_step
 from runner.plants.flexible_config import FlexibleJointsConfig
 from runner.plants.flexible_config import modes as modes
 from runner.plants.plant import Plant
+from runner.plants.stepped_bullet import SteppedBullet, find_motion_of, find_step
 from runner.robots.model import RobotModel
 from runner.robots.mounting import TOOL_MOUNT
 from runner.robots.robot import Robot
@@ -51,9 +54,6 @@ class LinksTorque:
         links: FloatArray = tau - self._armature * pin.aba(self._model, self._data, q, dq, tau)
         return links
 
-
-with quiet_stderr():  # PyBullet prints its build time
-    import pybullet
 
 IMPLICIT_CONTACT = True  # a wall's spring and damper act in each step, from the velocity at its end
 # Bullet clamps joint speeds at 100 rad/s by default; a Mini's free goal move is faster than that.
@@ -257,6 +257,34 @@ def build(config: BulletConfig, robot: Robot, step: float, steps_per_tick: int) 
     """Build the plant of a config."""
     if config.flexible_joints is not None:
         parts = config, config.flexible_joints, robot, step, steps_per_tick
-        return assemble_flexible(*parts, lambda links: Bullet(robot.urdf, links, step, 1))
+        return assemble_flexible(*parts, lambda links: make_arm(robot.urdf, links, step, 1))
     tick = step * steps_per_tick
-    return assemble_plant(config, robot, tick, lambda urdf, model: Bullet(urdf, model, step, steps_per_tick))
+    return assemble_plant(config, robot, tick, lambda urdf, model: make_arm(urdf, model, step, steps_per_tick))
+
+
+def motion(config: BulletConfig, robot: Robot, step: float, steps_per_tick: int) -> Motion | None:
+    """Return the motion of one arm by Bullet's step; None with springs, friction, several arms, or without the step."""
+    if config.flexible_joints is not None:
+        return None
+    found = find_motion(robot, config)
+    own = found.arms[0]
+    bullet = None
+    if len(found.arms) == 1 and not own.friction.acts.any():
+        bullet = find_motion_of(own.urdf, own.model, step, steps_per_tick)
+    return None if bullet is None else replace(found, bullet=bullet)
+
+
+def make_arm(urdf: str, model: RobotModel, step: float, steps_per_tick: int) -> Plant:
+    """Return an arm that moves as in PyBullet, by the compiled step if it is equal; arguments are those of Bullet.
+
+    Raises:
+        ConfigError: if PyBullet cannot load the URDF, or is needed and missing.
+    """
+
+    def make() -> Bullet:
+        if not engines.has_pybullet():
+            raise ConfigError(engines.bullet_missing())
+        return Bullet(urdf, model, step, steps_per_tick)
+
+    code = find_step(urdf, model, step, steps_per_tick)
+    return make() if code is None else SteppedBullet(code, model, steps_per_tick, make)

@@ -2,16 +2,13 @@
 
 import re
 import tempfile
-import xml.etree.ElementTree as ET
 from collections.abc import Sequence
 from dataclasses import dataclass
 
-from runner.base.engine_output import caught_output, quiet_stderr
+from runner.base.engine_output import caught_output
 from runner.base.errors import ConfigError
-from runner.robots.inertials import turn_to_principal_axes
-
-with quiet_stderr():  # PyBullet prints its build time
-    import pybullet
+from runner.base.lazy_modules import pybullet
+from runner.plants.bullet_links import bullet_text
 
 _KEPT = 4
 _MOST_JOINTS = 127
@@ -86,7 +83,7 @@ class PhysicsServers:
         said: list[str] = []
         # Bullet caches URDFs by file name within a process, so each arm gets a separate file name.
         with tempfile.NamedTemporaryFile("w", suffix=".urdf") as file:
-            file.write(_with_diagonal_inertias(urdf))
+            file.write(bullet_text(urdf))
             file.flush()
             flags = pybullet.URDF_USE_INERTIA_FROM_FILE | pybullet.URDF_USE_SELF_COLLISION_EXCLUDE_ALL_PARENTS
             try:
@@ -113,15 +110,6 @@ class PhysicsServers:
 
 SERVERS = PhysicsServers()
 """The physics servers of this process; they end with it."""
-
-
-def _with_diagonal_inertias(urdf: str) -> str:
-    """Return the URDF with inertial frames along principal axes, because Bullet turns them only to about 1e-8."""
-    root = ET.fromstring(urdf)  # noqa: S314 - text from the runner, checked when it was read
-    for link in root.findall("link"):
-        turn_to_principal_axes(link)
-    ET.indent(root)  # Bullet breaks names and numbers in long lines
-    return ET.tostring(root, encoding="unicode")
 
 
 def _words(said: Sequence[str]) -> list[str]:

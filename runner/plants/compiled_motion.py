@@ -1,4 +1,4 @@
-"""Compiled arm motion between two ticks: the classical Runge-Kutta scheme, with joint friction or flexible joints."""
+"""Compiled motion of one arm by the classical Runge-Kutta scheme, and torques of links with armature."""
 
 from abc import ABC, abstractmethod
 from collections.abc import Callable, Sequence
@@ -8,9 +8,8 @@ from typing import TYPE_CHECKING, Any, NamedTuple, Self
 import numpy as np
 
 from runner.base.arrays import FloatArray
-from runner.plants.compiled_friction import CompiledFriction, FrictionScalars, friction_scalars, put
+from runner.plants.compiled_friction import put
 from runner.robots.model import RobotModel
-from runner.robots.robot import StageBase
 from runner.symbolic.algebra import ArmAlgebra, Factors
 from runner.symbolic.arm import ArmConstants, constants_of, to_scalars
 from runner.symbolic.code import ROWS, SCRATCH, STATE, TABLE, Block, Part, Repeat, Slots
@@ -18,42 +17,10 @@ from runner.symbolic.engine import MOST_JOINTS, evaluator
 from runner.symbolic.expression import Value, places
 from runner.symbolic.program import Expressed, Frame, program
 from runner.symbolic.structure import any_number, arm_pattern, values_of
-from runner.symbolic.vectors import Vector, add, product, scale, subtract, times, transpose
+from runner.symbolic.vectors import Vector, add, scale, subtract, times
 
 if TYPE_CHECKING:  # these modules use this one
-    from runner.plants.decoupled import Motion
     from runner.plants.flexible_joints import Flexibility
-
-
-class ArmScalars(NamedTuple):
-    """Parameters of an arm that moves by its own dynamics.
-
-    Attributes:
-        constants: Constants of its bodies.
-        friction: Friction of its joints.
-        base: Constants of the bodies from the robot's base to this arm's base; None if the base does not rotate.
-    """
-
-    constants: ArmConstants
-    friction: FrictionScalars
-    base: ArmConstants | None
-
-
-class MotionScalars(NamedTuple):
-    """Parameters of a motion.
-
-    Attributes:
-        step: Integration step, in s.
-        tick: Time for which torques are held, in s.
-        gravity: Gravity vector in the robot's base frame, shape (3,), in m/s^2.
-        arms: Parameters of each arm; the constants of an arm whose base does not rotate include a constant gravity
-            vector.
-    """
-
-    step: Value
-    tick: Value
-    gravity: Vector
-    arms: tuple[ArmScalars, ...]
 
 
 class Springs(NamedTuple):
@@ -74,65 +41,6 @@ class Springs(NamedTuple):
     motors: Vector
     load: Vector
     free: Vector
-
-
-def motion_scalars(motion: "Motion", step: float, tick: float, number: Callable[[float], Any]) -> MotionScalars:
-    """Return the parameters of a motion as scalars.
-
-    Args:
-        motion: The motion.
-        step: Integration step, in s.
-        tick: Time for which torques are held, in s.
-        number: Function that returns the scalar for a number; it is not called for 0, 1 and -1.
-    """
-    robot = motion.robot
-    gravity = [number(value) for value in robot.model.gravity.tolist()]
-    arms = []
-    for index, arm in enumerate(motion.arms):
-        own, base = gravity, None
-        if index and motion.ignore_base_rotation:
-            fixed = StageBase(robot, index, ignore_base_rotation=True).rotation.T.dot(robot.model.gravity)
-            own = [number(value) for value in fixed.tolist()]
-        elif index:
-            base = constants_of(robot.model, number, [0.0] * 3, str(robot.stages[index].base_frame))
-        constants = constants_of(arm.model, number, own)
-        arms.append(ArmScalars(constants, friction_scalars(arm.friction, number), base))
-    return MotionScalars(number(step), number(tick), gravity, tuple(arms))
-
-
-def motion_pattern(motion: "Motion") -> str:
-    """Return a string that is the same for two motions with the same code."""
-    return repr((motion_scalars(motion, 0.5, 0.5, any_number), [arm.joints for arm in motion.arms]))
-
-
-def expressed_motion(motion: "Motion", numbers: MotionScalars, at: Slots, torques: Sequence[Value]) -> list[Part]:
-    """Return the code from the state of one tick to that of the next.
-
-    Args:
-        motion: The motion.
-        numbers: Parameters of the motion.
-        at: Allocator of slots; the state begins with joint positions and velocities, shapes (nq,).
-        torques: Acting torques, shape (nq,).
-    """
-    nq = motion.robot.model.nq
-    bases: list[Part] = []
-    arms: list[Part] = []
-    for arm, own in zip(motion.arms, numbers.arms, strict=True):
-        constants = own.constants
-        if own.base is not None:
-            # Gravity on a mounted stage follows the rotation of its base at the start of the tick.
-            whole = ArmAlgebra(own.base).tip(places(STATE, 0, nq), [0.0] * nq)
-            first, gravity = at.take(SCRATCH, 3)
-            bases.append(put(SCRATCH, first, product(transpose(whole[1]), numbers.gravity)))
-            constants = constants._replace(gravity=gravity)
-        joint, count = arm.joints.start, arm.model.nq
-        algebra = ArmAlgebra(constants)
-        acting: Vector = torques[joint : joint + count]
-        if arm.friction.acts.any():
-            state = places(STATE, joint, count), places(STATE, nq + joint, count)
-            acting = CompiledFriction(algebra, own.friction, *state, at).brake(acting, numbers.tick, arms)
-        Mover(algebra, joint, nq, count, at).move(acting, numbers.step, arms)
-    return [*bases, *arms]
 
 
 class Mover:
@@ -301,6 +209,13 @@ class CompiledStep(ArmCode):
         state[:] = own
 
 
+def links_torques(constants: ArmConstants, q: Vector, v: Vector, tau: Vector, at: Slots) -> Vector:
+    """Return the torques of links without armature that have the accelerations of an arm with armature."""
+    ddq = Mover(ArmAlgebra(constants), 0, len(q), len(q), at).acceleration(q, v, tau)
+    motors = [times(body.armature, a) for body, a in zip(constants.bodies, ddq, strict=True)]
+    return subtract(tau, motors)
+
+
 class CompiledLinksTorque(ArmCode):
     """Compiled link torques, without the torques A ddq of the armature; see runner/plants/bullet.py."""
 
@@ -312,9 +227,7 @@ class CompiledLinksTorque(ArmCode):
         gravity, _, constants = self._scalars(at.number)
         q, v = (at.take(STATE, n)[1] for _ in range(2))
         first, tau = at.take(ROWS, n)
-        ddq = Mover(ArmAlgebra(constants._replace(gravity=gravity)), 0, n, n, at).acceleration(q, v, tau)
-        motors = [times(body.armature, a) for body, a in zip(constants.bodies, ddq, strict=True)]
-        return [put(ROWS, first, subtract(tau, motors))]
+        return [put(ROWS, first, links_torques(constants._replace(gravity=gravity), q, v, tau, at))]
 
     def at(self, q: FloatArray, v: FloatArray, tau: FloatArray) -> FloatArray:
         """Return the torques of the links, shape (nq,), in N m; valid until the next call."""

@@ -3,7 +3,7 @@
 from collections.abc import Callable, Sequence
 from contextlib import ExitStack
 from dataclasses import dataclass
-from typing import Literal
+from typing import Literal, NamedTuple
 
 import numpy as np
 from pydantic import PositiveFloat
@@ -22,6 +22,7 @@ from runner.robots.robot import Robot, StageBase
 from runner.schema.model import StrictModel
 from runner.schema.units import Seconds
 from runner.schema.values import FrictionConfig
+from runner.symbolic.bullet_step import BulletArm
 
 
 class TorquePlantConfig(StrictModel):
@@ -64,6 +65,18 @@ class ArmMotion:
     friction: JointFriction
 
 
+class BulletMotion(NamedTuple):
+    """Motion of an arm by Bullet's step.
+
+    Attributes:
+        arm: The arm as Bullet has it.
+        step: Step that Bullet takes, in s.
+    """
+
+    arm: BulletArm
+    step: float
+
+
 @dataclass(frozen=True)
 class Motion:
     """The arms of a robot.
@@ -72,11 +85,13 @@ class Motion:
         robot: The robot.
         arms: One arm for the whole robot, or one for each stage without reaction on the stage below.
         ignore_base_rotation: True if the bases of mounted stages keep their orientation at home.
+        bullet: Bullet's step, which moves one arm without friction; None for the Runge-Kutta scheme.
     """
 
     robot: Robot
     arms: tuple[ArmMotion, ...]
     ignore_base_rotation: bool
+    bullet: BulletMotion | None = None
 
 
 def find_motion(robot: Robot, config: TorquePlantConfig) -> Motion:

@@ -48,8 +48,6 @@ class MujocoConfig(TorquePlantConfig):
             stages.
         integrator: Semi-implicit Euler (euler) or the classical Runge-Kutta scheme (rk4). MuJoCo's implicit schemes
             would equal euler, because friction of the joints acts outside MuJoCo's model.
-        in_place_of: The missing default plant that this one replaces, reported by the caveat default_plant; None if
-            this plant was selected.
         min_inertia: Smallest mass and principal moment of inertia of a moving link, in kg and kg m^2. Smaller values
             are raised to this one, because MuJoCo rejects moving links without mass and inertia.
         flexible_joints: Springs between motors and links; None for rigid joints.
@@ -57,7 +55,6 @@ class MujocoConfig(TorquePlantConfig):
 
     kind: Literal["mujoco"]
     integrator: Integrator
-    in_place_of: Literal["bullet"] | None
     min_inertia: AxisInertia[float] = Field(ge=1e-12, le=1e-3)
     flexible_joints: FlexibleJointsConfig | None = None
 

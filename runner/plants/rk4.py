@@ -84,8 +84,8 @@ def build(config: Rk4Config, robot: Robot, step: float, steps_per_tick: int) -> 
     return assemble_plant(config, robot, step * steps_per_tick, lambda _, model: Rk4(model, step, steps_per_tick))
 
 
-def motion(config: Rk4Config, robot: Robot) -> Motion | None:
-    """Return the motion that the plant integrates; None for flexible joints."""
+def motion(config: Rk4Config, robot: Robot, step: float, steps_per_tick: int) -> Motion | None:
+    """Return the motion that the plant integrates, at any step; None for flexible joints."""
     return None if config.flexible_joints is not None else find_motion(robot, config)
 
 

@@ -102,14 +102,14 @@ def describe_program(config: RunConfig, repetition: int = 0) -> LoopProgram | No
         config: The checked config.
         repetition: Number of the repetition, which determines the nominal model.
     """
-    timing = config.timing
+    timing, steps = config.timing, (config.timing.step, config.timing.steps_per_tick)
     if config.commands != "torque" or config.has_contact or config.loaded or not config.compilable:
         return None
-    motion = None if timing.delay is None else PLANTS.motion(config.plant, config.arm)
+    motion = PLANTS.motion(config.plant, config.arm, *steps) if timing.delay is not None else None
     commands = None if motion is None else _find_commands(config, _build_nominal(config, repetition)[1])
     if motion is None or commands is None:
         return None
-    return LoopProgram(commands, motion, timing.tick, timing.step, timing.steps_per_tick, timing.late[0])
+    return LoopProgram(commands, motion, timing.tick, *steps, timing.late[0])
 
 
 def check_assembly(config: RunConfig) -> None:

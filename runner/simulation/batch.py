@@ -8,6 +8,7 @@ import time
 from collections.abc import Callable, Hashable, Iterator, Sequence
 from dataclasses import dataclass, replace
 from itertools import groupby
+from threading import Lock
 from typing import Self
 
 import numpy as np
@@ -27,6 +28,7 @@ from runner.plugins.discovery import added_parts
 from runner.robots.model import RobotModel
 from runner.sensing.encoders import encoder_errors
 from runner.simulation.assembly import assemble_program, metric_context, reach_of
+from runner.simulation.by_ticks import simulate_by_ticks
 from runner.simulation.compiled.loop_program import LoopProgram, run_all
 from runner.simulation.compiled.loops import Rows
 from runner.simulation.drawn_loops import draw_commands, draws_together
@@ -36,6 +38,7 @@ from runner.simulation.results import Collector
 _MOST_BYTES = 32e6  # limit of the signals of runs that are simulated together
 _GROWTH = math.log(1.25)  # limit of the longest over the shortest run in a batch
 _MOST_KEPT = 2000
+_ONE_AT_A_TIME = Lock()  # PyBullet's servers belong to the process
 _MEMORY = Memory(4096)  # for controllers
 
 
@@ -182,7 +185,10 @@ class BatchSimulator:
             start,
         )
         seconds, well = (time.perf_counter() - began) / (len(runs) * rows), _ended_well(found)
-        for places in _grouped(range(len(runs)), lambda place: runs[place].scene):
+        for place in np.flatnonzero(found.stopped).tolist():
+            yield _by_ticks(runs[place], place)
+        whole = np.flatnonzero(~found.stopped).tolist()
+        for places in _grouped(whole, lambda place: runs[place].scene):
             one = runs[places[0]]
             traces = self._traces(found, runs, places, paths[places[0]], times, seconds)
             good = []
@@ -234,6 +240,15 @@ class BatchSimulator:
             tick_seconds=np.full(len(t) - 1, seconds),
             **self.memory.recall(describe, config.arm, config.ignore_base_rotation),
         )
+
+
+def _by_ticks(run: RunSpec, place: int) -> BatchResult | tuple[int, Trace]:
+    """Return a run at a place, simulated tick by tick."""
+    with _ONE_AT_A_TIME:
+        trace = simulate_by_ticks(run.config, run.repetition, run.config.timing.ticks, lambda _: run.q_start)
+    if trace.failure is not None:
+        return place, trace
+    return BatchResult([place], replace(trace, law_seconds=None)[None], metric_context(run.config))
 
 
 def _limits(run: RunSpec, command: FloatArray, dq: FloatArray, acted: NDArray[np.intp] | slice) -> FloatArray:

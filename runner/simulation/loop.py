@@ -98,7 +98,7 @@ class ControlLoops(Protocol):
 
 def _run(closed: ClosedLoop, laws: ControlLoops, contact: Contact | None, recorder: Recorder) -> None:
     plant, update, now, acting, torques = closed.plant, laws.update, recorder.now, recorder.timing.at, recorder.torques
-    kept_q, kept_dq, commands, _, end_points = recorder.rows
+    kept_q, kept_dq, commands, _, end_points, _ = recorder.rows
     times, clock, asked, bends, load, k = recorder.times, recorder.clock, recorder.asked, plant.bends, None, 0
     try:
         for k in range(closed.ticks + 1):

@@ -9,7 +9,7 @@ from functools import cache, lru_cache
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from runner.base.engines import STAND_IN, installed_versions
+from runner.base.engines import installed_versions
 from runner.base.machine import this_machine
 from runner.base.paths import package_dir
 from runner.config.dependent_keys import idle_keys
@@ -72,15 +72,10 @@ def portable_overrides(overrides: Sequence[str], config: Mapping[str, Any]) -> l
 
     Args:
         overrides: The given overrides.
-        config: The resulting config. If it has the plant bullet and no override names a plant, overrides stay
-            unchanged.
+        config: The resulting config.
     """
-    plant = config.get("plant", {})
-    stands_in = plant.get("in_place_of") is not None
-    name = f"plant={STAND_IN if stands_in else plant.get('kind')}"
-    named = [name if override == "plant=default" else override for override in overrides]
-    unsaid = stands_in and not any(override.startswith("plant=") for override in named)
-    return [*named, name] if unsaid else named
+    name = f"plant={config.get('plant', {}).get('kind')}"
+    return [name if override == "plant=default" else override for override in overrides]
 
 
 _quoted = lru_cache(4096)(shlex.quote)

@@ -28,15 +28,12 @@ from runner.metrics.caveats.setting import setting_of
 from runner.metrics.plant_error import COMPARED, PlantError, compare, on_runge_kutta, reason_not_comparable
 from runner.metrics.rounding import RoundingGrowth, move_start
 from runner.plugins.discovery import has_users_parts
-from runner.sensing.force_torque import ForceTorqueSensor
-from runner.sensing.streams import ENVIRONMENT, ROUNDING
+from runner.sensing.streams import ROUNDING
 from runner.simulation.assembly import assemble, metric_context
 from runner.simulation.batch import BatchResult, BatchSimulator, simulate_together
-from runner.simulation.closed_loop import ClosedLoop
+from runner.simulation.by_ticks import simulate_assembled, simulate_by_ticks
 from runner.simulation.drawn_loops import with_drawn
-from runner.simulation.loop import simulate
 from runner.simulation.results import Collector, RunResult, measure_repetition
-from runner.simulation.sensors import make_sensors
 
 MOST_THREADS = 4
 """Largest number of threads; more would wait for each other."""
@@ -83,24 +80,7 @@ def simulate_repetition(
         q_start = runs[0].q_start if signs is None else move_start(runs[0].q_start, signs)
         (found,) = batcher.simulate([replace(runs[0], q_start=q_start).first(ticks)])
         return found.traces[0] if isinstance(found, BatchResult) else found[1]
-    closed = assemble(config, repetition)
-    try:
-        (own,) = with_drawn(closed, config, [repetition]) or [closed]
-        q_start = own.q_start if signs is None else move_start(own.q_start, signs)
-        return simulate_assembled(replace(own, ticks=ticks, q_start=q_start), config, repetition)[0]
-    finally:
-        closed.close()
-
-
-def simulate_assembled(closed: ClosedLoop, config: RunConfig, repetition: int) -> tuple[Trace, list[str]]:
-    """Simulate one repetition; return its trace, and the warnings of the controllers and of the wrist sensor."""
-    made = make_sensors(closed, config, repetition)
-    if closed.interaction is not None:
-        closed.interaction.begin(np.random.default_rng([config.settings.seed, repetition, ENVIRONMENT]))
-    trace, wrist = simulate(closed, *made), made[1]
-    users = [loop.wrench_feedback for loop in closed.loops if loop.wrench_feedback is not None]
-    told = [message for controller in users for message in controller.messages()]
-    return trace, told + (wrist.overloads() if isinstance(wrist, ForceTorqueSensor) else [])
+    return simulate_by_ticks(config, repetition, ticks, lambda q: q if signs is None else move_start(q, signs))
 
 
 def _simulate_one_by_one(config: RunConfig) -> RunResult:

@@ -9,7 +9,7 @@ from runner.config.run import RunConfig
 from runner.plugins.discovery import added_parts
 from runner.simulation.assembly import assemble
 from runner.simulation.batch import BatchSimulator, simulate_together
-from runner.simulation.run import simulate_assembled
+from runner.simulation.by_ticks import simulate_assembled
 
 PROBED_TICKS = 50
 """Number of ticks for a measurement of the time for a tick, if a run is simulated separately."""

@@ -8,6 +8,7 @@ from typing import Any
 
 from runner.base.cache import Memory
 from runner.base.engines import installed_versions
+from runner.plants.stepped_bullet import bullet_versions
 from runner.plugins.discovery import GROUPS, added_parts, source_files
 from runner.store.names import Names
 from runner.store.physics import content_digest, physics_digest
@@ -15,7 +16,7 @@ from runner.store.seal import simulated_part
 from runner.symbolic.engine import evaluator
 
 _OWN = ("kinematic", "none", "rk4", "rk4_flexible_links")  # built-in plants without an external engine
-_ENGINES = {"bullet": ("pybullet",), "mujoco": ("mujoco",), **dict.fromkeys(_OWN, ())}
+_ENGINES = {"bullet": (), "mujoco": ("mujoco",), **dict.fromkeys(_OWN, ())}
 
 _MEMORY = Memory(4096)  # JSON strings of config groups, and the kinds that the groups name
 _PLACES = 12  # bytes of the digest in a name
@@ -90,9 +91,13 @@ def _kinds(group: Mapping[str, Any]) -> frozenset[str]:
 
 @lru_cache(maxsize=16)
 def _engines(plant: str) -> dict[str, str]:
-    """Return the versions of the engines that simulate a kind of plant; a plug-in plant may use any engine."""
+    """Return the versions of the engines that simulate a kind of plant; a plug-in plant may use any engine.
+
+    Runs of plant=bullet have the same names with and without PyBullet; see bullet_versions.
+    """
     used = _ENGINES.get(plant, ("mujoco", "pybullet"))
-    return installed_versions((*used, "pin")) | evaluator()
+    own = bullet_versions() if plant == "bullet" else {}
+    return installed_versions((*used, "pin")) | evaluator() | own
 
 
 @lru_cache(maxsize=16)

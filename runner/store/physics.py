@@ -38,9 +38,10 @@ _TABLE = """
     environments: __init__=environments.__init__ external_wrench=interaction free hand push wall
     metrics: __init__=metrics.__init__ contact=metrics.contact effort family plant_error positioning reaching
         rounding summary tracking
-    plants: __init__=plants.__init__ bullet bullet_servers compiled_friction compiled_motion=compiled.motion
-        computation=plants.computation decoupled flexible_config flexible_joints=plants.flexible_joints friction
-        friction_law kinematic motor_limits mujoco plant=plants.plant rk4 rk4_flexible_links servo wrappers=touched
+    plants: __init__=plants.__init__ bullet bullet_links bullet_servers compiled_bullet compiled_friction
+        compiled_motion=compiled.motion computation=plants.computation decoupled flexible_config
+        flexible_joints=plants.flexible_joints friction friction_law kinematic motor_limits mujoco plant=plants.plant
+        rk4 rk4_flexible_links servo stepped_bullet whole_motion wrappers=touched
     plugins: features guard metric_units registry
     robots: __init__=robots.__init__ canonical description drawn elements file_extensions inertials
         inverse_kinematics joint_dynamics mismatch mjcf mjcf_files mjcf_motors mjcf_urdf model mounting
@@ -48,11 +49,11 @@ _TABLE = """
     schema: values
     sensing: __init__=sensing.__init__ encoders endpoint=sensing.endpoint force_torque joint_torque streams velocity
         wrench
-    simulation: assembly batch calibration=calibration_job closed_loop=loop.closed_loop contact=loop.contact
+    simulation: assembly batch by_ticks calibration=calibration_job closed_loop=loop.closed_loop contact=loop.contact
         drawn_loops loop=simulation recorder results run=job sensors
     simulation/compiled: commands law loop_program loops
-    symbolic: algebra arm code engine expression maths=controllers.maths program regressor structure tangent
-        vectors=compiled.vectors
+    symbolic: algebra arm bullet_step code engine expression maths=controllers.maths program regressor structure
+        tangent vectors=compiled.vectors
     trajectories: __init__=trajectories.__init__ circle from_file geometry goal joint_motion=trajectories.joint_motion
         joint_quintic joint_sinusoids joint_waypoints line lissajous motion quintic shaped splines square
         trajectory=trajectories.trajectory waypoints

@@ -107,9 +107,6 @@ def _row(rule: str, why: str, expected: Sequence[ExpectedCaveat], runs: Mapping[
 
 
 FILE = "caveats.yaml"
-_OF_THE_MACHINE = ExpectedCaveat(
-    "default_plant", "*", "PyBullet was not installed; conclusions and verdicts are stated for it, and may differ."
-)
 _Texts = Annotated[list[Annotated[str, Field(min_length=1)]], Field(min_length=1)]
 
 
@@ -128,19 +125,20 @@ class Entry(StrictModel):
 
 
 def read_expected(folder: Path) -> tuple[ExpectedCaveat, ...]:
-    """Return the caveats that a study expects: those of its file, if it has one, and one that is the machine's.
+    """Return the caveats that a study expects: those of its file, if it has one.
 
     Raises:
         RunnerError: if the file does not fit, or names a rule that does not exist; with entry and key.
     """
     path = folder / FILE
     if not path.is_file():
-        return (_OF_THE_MACHINE,)
+        return ()
     entries = read_data(path, list[Entry])
     for rule in (rule for entry in entries for rule in entry.rules):
         if rule not in THRESHOLDS:
             raise RunnerError(
                 f"{path}: there is no rule '{rule}'{nearest(rule, THRESHOLDS)}; rules: {', '.join(THRESHOLDS)}"
             )
-    listed = (ExpectedCaveat(rule, runs, entry.why) for entry in entries for runs in entry.runs for rule in entry.rules)
-    return (*listed, _OF_THE_MACHINE)
+    return tuple(
+        ExpectedCaveat(rule, runs, entry.why) for entry in entries for runs in entry.runs for rule in entry.rules
+    )

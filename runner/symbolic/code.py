@@ -1,5 +1,6 @@
 """LLVM intermediate representation of programs: straight-line code inside loops, and its memory layout."""
 
+import platform
 import struct
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
@@ -12,6 +13,8 @@ ARRAYS = (GIVEN, ROWS, STATE, SCRATCH, PARS, TABLE)
 INTEGERS = ("first", "end", "last", "delay", "steps")
 _COMPARISONS = {"less": "fcmp olt", "equal": "fcmp oeq"}
 _FUNCTIONS = ("sqrt", "fabs", "rint", "floor")
+_LIBRARY = ("sin", "cos")  # of the C library
+_TOGETHER = platform.system() == "Linux"  # whose C library computes both at once, with the same bits
 
 
 @dataclass(frozen=True)
@@ -69,7 +72,9 @@ class _Writer:
         self._lines: list[str] = []
         self._count, self._label = 0, "entry"
         self._rows = {space: f"%{space}" for space in (STATE, SCRATCH, PARS)}
-        self._used: dict[str, None] = {}
+        self._used: dict[str, None] = {}  # declarations of functions
+        self._buffers: list[str] = []  # of the C library's sine and cosine
+        self._turns: dict[str, tuple[str, str]] = {}  # sine and cosine of angles in this block
 
     def write(self, ticks: Sequence[Part], between: Sequence[Part]) -> str:
         for index, (name, kind) in enumerate([*((n, "ptr") for n in ARRAYS), *((n, "i64") for n in INTEGERS)]):
@@ -89,8 +94,9 @@ class _Writer:
         self._lines.append(f"  br label %{moved}")
         self._begin(moved)
         self._close(head, k, "%end", None)
-        declared = [f"declare {self._number} @llvm.{name}({self._number})" for name in self._used]
-        return "\n".join([*declared, "define void @run(ptr %frame) {", "entry:", *self._lines, "  ret void", "}", ""])
+        buffers = [f"  {name} = alloca [{self._lanes} x double], align 64" for name in self._buffers]
+        body = ["define void @run(ptr %frame) {", "entry:", *buffers, *self._lines, "  ret void", "}", ""]
+        return "\n".join([*self._used, *body])
 
     def _parts(self, parts: Sequence[Part]) -> None:
         for part in parts:
@@ -106,6 +112,7 @@ class _Writer:
 
     def _block(self, block: Block) -> None:
         values = [expression(value) for _, _, value in block.outputs]
+        self._turns.clear()
         names: dict[int, str] = {}
         known: dict[tuple[Any, ...], str] = {}
         for node in in_order(values):
@@ -133,9 +140,38 @@ class _Writer:
             return self._line(f"xor {truth} {operands[0]}, {'true' if self._lanes == 1 else 'splat (i1 true)'}")
         if operation in _FUNCTIONS:
             name = f"{operation}.{'f64' if self._lanes == 1 else f'v{self._lanes}f64'}"
-            self._used[name] = None
+            self._used[f"declare {number} @llvm.{name}({number})"] = None
             return self._line(f"call {number} @llvm.{name}({number} {operands[0]})")
+        if operation in _LIBRARY:
+            angle = operands[0]
+            if angle not in self._turns:
+                self._turns[angle] = self._sine_cosine(angle)
+            return self._turns[angle][_LIBRARY.index(operation)]
         return self._line(f"{operation} {number} {', '.join(operands)}")
+
+    def _sine_cosine(self, angle: str) -> tuple[str, str]:
+        """Return sine and cosine by the C library, run by run."""
+        if not self._buffers:
+            self._buffers = [f"%{name}.buffer" for name in ("angle", "sine", "cosine")]
+            declared = (
+                ["void @sincos(double, ptr, ptr)"] if _TOGETHER else [f"double @{name}(double)" for name in _LIBRARY]
+            )
+            self._used |= dict.fromkeys(f"declare {function}" for function in declared)
+        at, sine, cosine = self._buffers
+        self._lines.append(f"  store {self._number} {angle}, ptr {at}, align 8")
+        for lane in range(self._lanes):
+            own, *found = (
+                self._line(f"getelementptr double, ptr {buffer}, i64 {lane}") for buffer in (at, sine, cosine)
+            )
+            value = self._line(f"load double, ptr {own}, align 8")
+            if _TOGETHER:
+                self._lines.append(f"  call void @sincos(double {value}, ptr {found[0]}, ptr {found[1]})")
+                continue
+            for name, place_ in zip(_LIBRARY, found, strict=True):
+                result = self._line(f"call double @{name}(double {value})")
+                self._lines.append(f"  store double {result}, ptr {place_}, align 8")
+        one, other = (self._line(f"load {self._number}, ptr {buffer}, align 8") for buffer in (sine, cosine))
+        return one, other
 
     def _constant(self, value: float) -> str:
         bits = struct.unpack(">Q", struct.pack(">d", value))[0]

@@ -139,6 +139,16 @@ def absolute(a: Value) -> Value:
     return Expression("fabs", expression(a))
 
 
+def library_sine(a: Value) -> Value:
+    """Return the sine by the C library, whose bits may depend on the machine; see sine_cosine."""
+    return Expression("sin", expression(a))
+
+
+def library_cosine(a: Value) -> Value:
+    """Return the cosine by the C library, whose bits may depend on the machine; see sine_cosine."""
+    return Expression("cos", expression(a))
+
+
 def round_to_even(a: Value) -> Value:
     """Return the nearest integer; the even one if two are equally near."""
     return Expression("rint", expression(a))

@@ -110,7 +110,7 @@ def program(pattern: str, what: str, express: Callable[[], Expressed], lanes: in
         lanes: Runs that are computed together.
         ours: True if only built-in code determines the expressions; else the code is not cached on disk.
     """
-    content = "\0".join([pattern, _source_digest(), str(evaluator()), processor(), str(lanes)])
+    content = "\0".join([pattern, source_digest(), str(evaluator()), processor(), str(lanes)])
     return _program(hashlib.sha256(content.encode()).hexdigest(), what, ours, lanes, _Maker(express))
 
 
@@ -158,7 +158,7 @@ def _loaded(code: bytes, widths: Mapping[str, int], errors: Sequence[str], lanes
 
 
 @cache
-def _source_digest() -> str:
+def source_digest() -> str:
     """Return a digest of the source of all packages whose code makes expressions."""
     digest = hashlib.sha256()
     for package in PACKAGES:

@@ -219,8 +219,8 @@ def test_without_3_11_it_gets_the_newest_supported_and_says_what_is_left_out(ins
     found = write_python(elsewhere / "bin" / "python3.14", "3 14")
     assert install.choose() == ((3, 14), found)
     assert install.describe((3, 14), found, True) == (
-        f"Python 3.14 ({found}), as no Python 3.11 was found: PyBullet has no wheel for it and is left out, so that "
-        "plant=mujoco is the default"
+        f"Python 3.14 ({found}), as no Python 3.11 was found: PyBullet has no wheel for it and is left out; "
+        "plant=bullet is compiled"
     )
 
 

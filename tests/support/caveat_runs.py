@@ -26,9 +26,9 @@ def stacked(*runs):
 
 
 def found(config, *runs, **changed):
-    """The caveats of runs by their rule, except for that of a machine without PyBullet."""
+    """The caveats of runs by their rule."""
     setting = replace(setting_of(config), repetitions=max(1, len(runs)), **changed)
     watch = Watch(setting, config.caveats)
     for run in runs:
         watch.look(run)
-    return {caveat.rule: caveat for caveat in watch.found().caveats if caveat.rule != "default_plant"}
+    return {caveat.rule: caveat for caveat in watch.found().caveats}

@@ -2,7 +2,6 @@
 
 import pytest
 
-from runner.base.engines import has_pybullet
 from runner.plants import PLANTS
 from runner.plants.rk4 import Rk4
 
@@ -15,10 +14,10 @@ ENGINES = {
 }
 """The overrides that choose each; rk4 goes through Pinocchio here, and is compiled code under the other name."""
 
-ASKED = "plant=bullet" if has_pybullet() else "plant=mujoco"
-"""Asks for the plant that `default` stands for by its own name, so that no run says that it stands in for another."""
+ASKED = "plant=bullet"
+"""Names the default plant."""
 
-DEFAULT_PLANT = "PyBullet" if has_pybullet() else "MuJoCo"
+DEFAULT_PLANT = "PyBullet"
 """Name of this plant in reports."""
 
 FOURTH_ORDER = ("mujoco rk4", "rk4", "compiled rk4")

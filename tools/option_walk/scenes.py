@@ -252,7 +252,6 @@ LEFT_OUT: Mapping[str, str] = {
     "robot.mjcf": "another file is another robot",
     "robot.name": "a label",
     "robot.tip": "a name of a frame in the file",
-    "plant.in_place_of": "a label, for a warning",
     "robot.no_joint_error": "0 for each stage, for noise=none",
     "robot.stages": "the keys of each arm; the scene arm changes them",
     "trajectory.columns": "the content of a file",

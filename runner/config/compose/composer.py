@@ -20,7 +20,6 @@ from hydra.types import RunMode
 from omegaconf import DictConfig, OmegaConf
 
 from runner.base.dotted_keys import check_references
-from runner.base.engines import default_plant
 from runner.base.errors import ConfigError
 from runner.base.paths import conf_dir, studies_dir, studies_with
 from runner.base.sanitize import quoted
@@ -108,7 +107,7 @@ class Composer:
         studies = [studies_dir() / name / "experiment" for name in studies_with("experiment")]
         files = state_of((conf_dir(), *studies, *self.config_dirs), _MOST)
         load = _load_options if files is not None else _load_options.__wrapped__
-        others = files, default_plant(), in_use()
+        others = files, in_use()
         config: DictConfig = pickle.loads(load(self.config_dirs, lines, root, mode, *others))  # noqa: S301
         return config
 
@@ -208,7 +207,7 @@ def _load_options(
 ) -> bytes:
     """Return the pickled config that Hydra composes from options.
 
-    Besides the state of the files, None if it is unknown, the plant of `default` and the plug-ins decide the result.
+    Besides the state of the files, None if it is unknown, the plug-ins decide the result.
     """
     loader: Any = Composer(config_dirs).hydra
     if files is not None:

@@ -26,7 +26,6 @@ from omegaconf import DictConfig, OmegaConf
 
 from runner.base.bounded_yaml import CONFIG, YamlError, check_yaml
 from runner.base.dotted_keys import dotted, leaves
-from runner.base.engines import default_plant
 from runner.base.errors import ConfigError
 from runner.base.limits import ExcessError, read_text
 from runner.base.paths import check_inside, conf_dir, ships
@@ -76,7 +75,6 @@ class FunctionSource(ConfigSource):
 VERSION_BASE: Mapping[str, Any] = {"version_base": "1.3"} if hydra.__version__.startswith("1.3.") else {}
 """Argument of Hydra's functions for the present defaults; from Hydra 1.4 on they have these without the argument."""
 _SCHEME = "checked"
-_DEFAULT_PLANT = "plant/default.yaml"  # names the plant that is installed
 _USERS = "command-line"  # Hydra's name of where such a folder comes from
 _HEAD = 512  # characters that Hydra searches for the package of a file
 _ENDS = re.compile(r"_global_.?|[./:@]")  # of the parts of a package; a package after `_global_` is absolute
@@ -167,8 +165,6 @@ class CheckedSource(ConfigSource):
         check_inside(path, [Path(self.path)])
         status = path.stat()
         content, package = pickle.loads(_read(path, status.st_mtime_ns, status.st_size))  # noqa: S301 - made by _read
-        if path == conf_dir() / _DEFAULT_PLANT:
-            content["defaults"] = [f"/plant/{default_plant()}@_here_"]
         if not ships(path):
             if self.provider == _USERS and self._has_ours(config_path):  # ambiguous name
                 group, _, option = config_path.rpartition("/")

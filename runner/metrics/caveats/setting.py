@@ -47,7 +47,6 @@ class Setting:
         noise: Noise of the joint measurement; None for encoders of another kind.
         mismatch: Factors on the nominal model of the controllers; None for a mismatch of another kind.
         mass: Mass of all moving links, in kg.
-        in_place_of: Kind of the default plant if this plant replaces it because it is missing; otherwise None.
         contact: Contact of a servo-driven arm with a wall under an admittance law; None without one.
         touch: Growth factor of a small motion on a wall in a period of a hybrid force law; None without one.
         velocity_loop: Velocity gain relative to the stability limit of its period; None if no gain is known.
@@ -72,7 +71,6 @@ class Setting:
     noise: "EncoderNoise | None"
     mismatch: "MismatchConfig | None"
     mass: float
-    in_place_of: str | None
     contact: "ServoContact | None"
     touch: float | None
     velocity_loop: "VelocityLoop | None"
@@ -91,7 +89,6 @@ def setting_of(config: "RunConfig", q_start: FloatArray | None = None) -> Settin
     from runner.controllers.stability import velocity_loop
     from runner.metrics.caveats.contact_stability import force_contact, servo_contact
     from runner.metrics.caveats.time_constants import slowest_part
-    from runner.plants import options_of
 
     model = config.arm.model
     units, position_limits, mass = _of_model(model)
@@ -117,7 +114,6 @@ def setting_of(config: "RunConfig", q_start: FloatArray | None = None) -> Settin
         noise=config.encoder_noise,
         mismatch=config.model_error,
         mass=mass,
-        in_place_of=options_of(config.plant).in_place_of,
         contact=None if q_start is None else servo_contact(config, q_start),
         touch=None if q_start is None else force_contact(config, q_start),
         velocity_loop=velocity_loop(config.loops, config.arm, config.path) if config.commands == "torque" else None,

@@ -156,13 +156,6 @@ def _tell_radius(value: float, setting: Setting) -> str:
     )
 
 
-def _tell_replaced(_: float, setting: Setting) -> str:
-    return (
-        f"{setting.plant} stands in for {setting.in_place_of}, the default plant, as PyBullet is not installed: bands "
-        f"and verdicts are stated for {setting.in_place_of}"
-    )
-
-
 def _tell_left_out(value: float, setting: Setting) -> str:
     return "; ".join(f"not taken from {file}: {'; '.join(parts)}" for file, parts in setting.left_out.items())
 
@@ -175,7 +168,6 @@ SETTING_RULES = (
     SettingRule("unstable_gains", lambda setting: setting.velocity_loop and setting.velocity_loop.share, _tell_gains),
     SettingRule("unstable_contact", _radius, _tell_radius),
     SettingRule("short_horizon", _time_share, _tell_horizon),
-    SettingRule("default_plant", lambda setting: 1.0 if setting.in_place_of else None, _tell_replaced),
     SettingRule("robot_file", lambda setting: float(sum(map(len, setting.left_out.values()))) or None, _tell_left_out),
 )
 """Rules in the order of output."""

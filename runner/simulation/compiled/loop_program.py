@@ -9,8 +9,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from runner.base.arrays import FloatArray
-from runner.plants.compiled_motion import MotionScalars, expressed_motion, motion_pattern, motion_scalars
 from runner.plants.decoupled import Motion
+from runner.plants.whole_motion import MotionScalars, expressed_motion, motion_pattern, motion_scalars
 from runner.simulation.compiled.commands import Commands, CommandScalars, expressed_commands
 from runner.simulation.compiled.loops import Rows
 from runner.symbolic.arm import Folding
@@ -122,6 +122,8 @@ def run_all(
 ) -> Rows:
     """Compute runs with the same code and number of ticks; results are bit-identical to separate runs.
 
+    A run of Bullet's step ends in the tick in which a joint reaches a limit; see Rows.stopped.
+
     Args:
         loop_program: The closed loop of one of the runs.
         values: Parameters of each run, shape (runs, parameters); see LoopProgram.values.
@@ -137,7 +139,7 @@ def run_all(
     code = loop_program.program(1 if count == 1 else LANES)
     frame = code.frame(ticks, loop_program.delay, loop_program.steps)
     nq, stages = len(loop_program.commands.limits.max), len(loop_program.motion.robot.stages)
-    found = Rows.new(np.empty, (count, ticks), nq, stages)
+    found = Rows.new(np.empty, (count, ticks), nq, stages)._replace(stopped=np.zeros(count, dtype=bool))
     wide, long = shared.shape[-1], start.shape[1]
     for first in range(0, count, code.lanes):
         own = slice(first, min(first + code.lanes, count))
@@ -154,6 +156,8 @@ def run_all(
         rows = Rows.of(frame.rows[:, :, :used].transpose(2, 0, 1), nq)
         found.q[own], found.dq[own], found.command[own], found.fault[own] = rows[:4]
         found.end_points[:, own] = rows.end_points
+        if loop_program.motion.bullet is not None:
+            found.stopped[own] = frame.state[long, :used] != 0.0  # see expressed_steps
     return found
 
 

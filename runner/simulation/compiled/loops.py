@@ -4,6 +4,7 @@ from collections.abc import Callable, Sequence
 from typing import NamedTuple
 
 import numpy as np
+from numpy.typing import NDArray
 
 from runner.base.arrays import FloatArray
 from runner.simulation.compiled.commands import Commands
@@ -32,6 +33,7 @@ class Rows(NamedTuple):
         command: Commands: torques within their limits in N m, or joint positions in rad, shape (..., T, nq).
         fault: Number of the failure in a compiled control law, 0 for none, shape (..., T).
         end_points: End point of each stage, shape (stages, ..., T, 3), in m.
+        stopped: True for each run compiled as a whole whose code does not know the motion up to the end, shape (...).
     """
 
     q: FloatArray
@@ -39,6 +41,7 @@ class Rows(NamedTuple):
     command: FloatArray
     fault: FloatArray
     end_points: FloatArray
+    stopped: NDArray[np.bool_] = np.zeros(0, dtype=bool)
 
     @classmethod
     def of(cls, values: FloatArray, nq: int) -> "Rows":

@@ -12,6 +12,7 @@ from runner.robots.model import RobotModel
 pybullet = pytest.importorskip("pybullet", reason="PyBullet is not installed")
 
 from runner.plants.bullet import Bullet, build, default_step  # noqa: E402
+from runner.plants.stepped_bullet import SteppedBullet  # noqa: E402
 
 INERTIAL = '<inertial><mass value="{m}"/><inertia ixx="{i}" ixy="0" ixz="0" iyy="{i}" iyz="0" izz="{i}"/></inertial>'
 NOTHING = INERTIAL.format(m=0, i=0)
@@ -251,7 +252,7 @@ def test_build_and_default_step(checked_config, macro_urdf, one_stage, dynamics,
         "robot=macro", "plant=bullet", f"plant.dynamics={dynamics}", f"plant.wrist_rotation={wrist_rotation}"
     ).plant
     plant = build(config, one_stage(macro_urdf, RobotModel(macro_urdf, "tip")), 1e-3, 10)
-    assert isinstance(plant, Bullet)
+    assert isinstance(plant, SteppedBullet)
     plant.close()
     assert default_step(0.01, 1) == pytest.approx(0.001)
     assert default_step(0.001, 2) == pytest.approx(0.00025)

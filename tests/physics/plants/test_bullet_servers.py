@@ -87,6 +87,7 @@ def test_a_plant_that_raises_while_it_is_set_up_leaves_none(servers_before, monk
     def broken(*_):
         raise RuntimeError("no sensor")
 
+    monkeypatch.setattr(bullet, "find_step", lambda *_: None)
     monkeypatch.setattr(bullet.Bullet, "_enable_tool_sensor", broken)
     with pytest.raises(RuntimeError, match="no sensor"):
         assemble(checked_config("robot=macro"))

@@ -151,7 +151,7 @@ def test_runs_of_other_code_or_other_lengths_stand_in_other_batches():
 
 @pytest.mark.parametrize(
     "overrides",
-    [("plant=bullet",), ("environment=push",), ("robot=xarm7", "controller=differential_inverse_kinematics")],
+    [("plant=mujoco",), ("environment=push",), ("robot=xarm7", "controller=differential_inverse_kinematics")],
 )
 def test_what_is_not_compiled_as_a_whole_goes_its_own_way(overrides):
     assert BatchSimulator().repetitions(configured(*overrides)) is None

@@ -120,9 +120,9 @@ def test_kept_code_of_another_source_is_not_used(tmp_path, monkeypatch, package)
     file.parent.mkdir(parents=True)
     file.write_text("GAIN = 1.0")
     monkeypatch.setattr(program_module, "package_dir", lambda: tmp_path)
-    before = program_module._source_digest.__wrapped__()
+    before = program_module.source_digest.__wrapped__()
     file.write_text("GAIN = 2.0")
-    assert program_module._source_digest.__wrapped__() != before
+    assert program_module.source_digest.__wrapped__() != before
 
 
 def test_the_source_of_kept_code_is_that_of_every_package_with_expressions():

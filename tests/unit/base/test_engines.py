@@ -1,16 +1,19 @@
-"""The substitute for bullet if PyBullet is not installed, and the messages about it."""
+"""plant=bullet with and without PyBullet: names, bits, messages."""
 
+import hashlib
 import platform
+import sys
 
 import pytest
 from support.grids import plan_sweep
-from support.printed import without_results
 
 from runner.base import engines
-from runner.base.errors import ConfigError
 from runner.config.compose.compose import compose
 from runner.config.validation import validate
+from runner.plants import stepped_bullet
 from runner.simulation.provenance import command
+from runner.simulation.run import simulate_repetition
+from runner.store.identity import run_hash
 
 
 @pytest.fixture(params=[pytest.param(True, marks=pytest.mark.bullet), False], ids=["with PyBullet", "without"])
@@ -29,29 +32,10 @@ def plant_of(*overrides):
     return compose(overrides).resolved["plant"]
 
 
+@pytest.mark.usefixtures("installed")
 @pytest.mark.parametrize("overrides", [(), ("robot=xarm7", "plant=default"), ("experiment=thesis/figure_3_5",)])
-def test_the_default_plant_is_bullet_or_says_for_which_one_it_stands_in(installed, overrides):
-    plant = plant_of(*overrides)
-    if installed:
-        assert plant == plant_of(*overrides, "plant=bullet")
-    else:
-        assert (plant["kind"], plant["integrator"], plant["step"]) == ("mujoco", "euler", None)
-        assert plant == {**plant_of(*overrides, "plant=mujoco"), "in_place_of": "bullet"}
-
-
-@pytest.mark.usefixtures("_missing")
-def test_what_asks_for_another_plant_gets_it():
-    for name in ("rk4", "kinematic", "mujoco"):
-        assert plant_of(f"plant={name}")["kind"] == name
-    assert plant_of("plant=mujoco")["in_place_of"] is None
-    assert plant_of("robot=xarm7")["kind"] == "kinematic"  # its controller does
-    assert plant_of("robot=xarm7", "plant=default")["kind"] == "mujoco"
-    assert plant_of("experiment=meca500/circle")["kind"] == "mujoco"
-
-
-def test_overrides_reach_the_plant_that_is_there(installed):
-    plant = plant_of("plant.step=1e-4", "plant.friction.viscous=2", "plant.servo.stiffness=7")
-    assert (plant["step"], plant["friction"]["viscous"], plant["servo"]["stiffness"]) == (1e-4, 2, 7)
+def test_the_default_plant_is_bullet(overrides):
+    assert plant_of(*overrides) == plant_of(*overrides, "plant=bullet")
 
 
 def test_a_sweep_composes_as_a_run_does(installed):
@@ -60,66 +44,84 @@ def test_a_sweep_composes_as_a_run_does(installed):
         assert grid.composed(cell).resolved == compose(grid.overrides(cell)).resolved
 
 
-def test_the_recorded_command_names_what_stands_in(installed):
+@pytest.mark.usefixtures("installed")
+def test_the_recorded_command_names_the_plant():
     recorded = {
         text: command(compose(text.split())) for text in ("robot=macro", "plant=default robot=mini", "plant=rk4")
     }
     assert recorded == {
-        "robot=macro": "runner robot=macro" + ("" if installed else " plant=mujoco_fallback"),
-        "plant=default robot=mini": f"runner plant={'bullet' if installed else 'mujoco_fallback'} robot=mini",
+        "robot=macro": "runner robot=macro",
+        "plant=default robot=mini": "runner plant=bullet robot=mini",
         "plant=rk4": "runner plant=rk4",
     }
-    assert compose(["robot=mini", "plant=mujoco_fallback"]).resolved["plant"]["in_place_of"] == "bullet"
+
+
+def names_and_bits(*overrides):
+    """Return the hash of a run, and a digest of its motion."""
+    config = validate(compose(overrides))
+    trace = simulate_repetition(config)
+    assert trace.failure is None
+    motion = b"".join((part + 0.0).tobytes() for part in (trace.q, trace.dq, trace.tau))
+    return run_hash(config.resolved, config.arm.urdf), hashlib.sha256(motion).hexdigest()[:16]
+
+
+MOTIONS = {  # with and without PyBullet, on each Python
+    ("robot=macro", "duration=0.3", "noise=thesis"): "27be37fb2dcce6f9",
+    ("robot=macro", "duration=0.3", "robot.friction.coulomb=0.5"): "f82975ecb96c66dc",
+    ("robot=ur5e", "duration=0.1", "controller=computed_torque"): "fdeb4a73f0801e26",
+}
+
+
+@pytest.mark.parametrize("overrides", MOTIONS)
+def test_runs_have_their_names_and_bits_without_pybullet(overrides, monkeypatch, capsys):
+    own = names_and_bits(*overrides)
+    assert own[1] == MOTIONS[overrides]
+    forget()
+    monkeypatch.setattr(engines, "has_pybullet", lambda: False)
+    monkeypatch.setitem(sys.modules, "pybullet", None)  # to import it is an error
+    assert names_and_bits(*overrides) == own
+    assert (
+        "PyBullet is not installed: the step of plant=bullet is not compared on this machine" in capsys.readouterr().err
+    )
+    forget()
+
+
+def forget():
+    """Forget which steps were compared."""
+    for known in (stepped_bullet.find_arm, stepped_bullet._tell):
+        known.cache_clear()
 
 
 @pytest.mark.usefixtures("_missing")
-def test_bullet_without_pybullet_says_what_to_do(cli, monkeypatch):
+def test_a_run_without_pybullet_ends_where_pybullet_would_go_on():
+    forget()
+    trace = simulate_repetition(
+        validate(compose(["robot=so101", "controller=held_torques", "duration=1.5", "plant=bullet"]))
+    )
+    assert "a joint reaches its position limit; PyBullet goes on there, but is not installed" in trace.failure.reason
+    assert 0.0 < trace.failure.time < 1.5
+    forget()
+
+
+@pytest.mark.usefixtures("_missing")
+def test_what_only_pybullet_can_do_says_what_to_do(cli, monkeypatch):
     monkeypatch.setattr(platform, "python_version_tuple", lambda: ("3", "12", "1"))
-    ending = cli("plant=bullet", "noise.position=-1")
+    ending = cli("robot=meca500", "plant=bullet", "environment=wall", "controller=operational_space")
     assert (ending.code, ending.out) == (2, "")
-    assert ending.err == (
-        "runner: 2 problems in the config:\n"
-        "  - plant.kind: bullet needs PyBullet, which is not installed; take plant=mujoco, or install it by "
+    assert ending.err.endswith(
+        "plant.kind: bullet needs PyBullet for this arm, which is not installed; take plant=mujoco, or install it by "
         "`pip install pybullet`, which builds it with a C++ compiler for some minutes: Python 3.12 has no wheel "
         "of it, 3.11 has\n"
-        "  - noise.position: must be 0 or more; found -1\n"
     )
     monkeypatch.setattr(platform, "python_version_tuple", lambda: ("3", "11", "7"))
-    assert "take plant=mujoco, or install it by `pip install pybullet`\n" in cli("plant=bullet").err
+    assert engines.bullet_missing().endswith("take plant=mujoco, or install it by `pip install pybullet`")
 
 
-def test_the_list_of_plants_says_that_bullet_is_missing(cli, installed):
-    (line,) = [line for line in cli("list", "plants").out.splitlines() if line.startswith("bullet ")]
-    assert ("PyBullet is not installed: " in line) != installed
-
-
-@pytest.mark.usefixtures("_missing")
-def test_a_sweep_over_bullet_says_so_before_anything_starts(cli):
-    ending = cli("-m", "plant=rk4,bullet", "duration=0.1")
-    assert (ending.code, ending.out) == (2, "")
-    assert "[plant=bullet duration=0.1] plant.kind: bullet needs PyBullet" in ending.err
-    assert "nothing was started" in ending.err
-
-
-@pytest.mark.usefixtures("_missing")
-def test_a_hint_names_no_plant_that_is_missing():
-    with pytest.raises(
-        ConfigError, match="take plant=mujoco or plant=rk4 or plant=rk4_flexible_links, or a controller"
-    ):
-        validate(compose(["plant=kinematic"]))
-
-
-@pytest.mark.usefixtures("_missing")
-def test_a_default_run_carries_a_caveat_and_one_that_asked_for_mujoco_none(cli):
-    default, asked = cli("robot=macro"), cli("robot=macro", "plant=mujoco")
-    assert (default.code, asked.code) == (0, 0)
-    assert without_results(default.err) == (
-        "runner: caveat: default_plant: mujoco stands in for bullet, the default plant, as PyBullet is not installed: "
-        "bands and verdicts are stated for bullet\n"
-    )
-    assert without_results(asked.err) == ""
-    assert default.folder != asked.folder
-    assert without_results(cli("robot=macro", "seed=1", "caveats.default_plant.replaced=1").err) == ""
+@pytest.mark.parametrize("same", [True, False])
+def test_another_pybullet_names_runs_if_its_bits_differ(same, monkeypatch):
+    monkeypatch.setattr(engines, "installed_versions", lambda names: {"pybullet": "9.9"})
+    monkeypatch.setattr(stepped_bullet, "find_arm", lambda *_: "an arm" if same else None)
+    assert stepped_bullet.bullet_versions() == {"bullet": "3.27", **({} if same else {"pybullet": "9.9"})}
 
 
 def test_versions_are_those_of_what_is_installed():

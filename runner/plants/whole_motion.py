@@ -1,0 +1,116 @@
+"""Compiled motion of a robot between two ticks: Runge-Kutta with joint friction, or Bullet's step."""
+
+from collections.abc import Callable, Sequence
+from typing import Any, NamedTuple
+
+from runner.plants.compiled_bullet import bullet_scalars, expressed_steps
+from runner.plants.compiled_friction import CompiledFriction, FrictionScalars, friction_scalars, put
+from runner.plants.compiled_motion import Mover
+from runner.plants.decoupled import Motion
+from runner.robots.robot import StageBase
+from runner.symbolic.algebra import ArmAlgebra
+from runner.symbolic.arm import ArmConstants, constants_of
+from runner.symbolic.bullet_step import BulletArm
+from runner.symbolic.code import SCRATCH, STATE, Part, Slots
+from runner.symbolic.expression import Value, places
+from runner.symbolic.structure import any_number
+from runner.symbolic.vectors import Vector, product, transpose
+
+
+class ArmScalars(NamedTuple):
+    """Parameters of an arm that moves by its own dynamics.
+
+    Attributes:
+        constants: Constants of its bodies.
+        friction: Friction of its joints.
+        base: Constants of the bodies from the robot's base to this arm's base; None if the base does not rotate.
+    """
+
+    constants: ArmConstants
+    friction: FrictionScalars
+    base: ArmConstants | None
+
+
+class MotionScalars(NamedTuple):
+    """Parameters of a motion.
+
+    Attributes:
+        step: Integration step, in s.
+        tick: Time for which torques are held, in s.
+        gravity: Gravity vector in the robot's base frame, shape (3,), in m/s^2.
+        arms: Parameters of each arm; the constants of an arm whose base does not rotate include a constant gravity
+            vector.
+        bullet: An arm as Bullet has it, instead of `arms`, and its constants if it has armature; None otherwise.
+    """
+
+    step: Value
+    tick: Value
+    gravity: Vector
+    arms: tuple[ArmScalars, ...]
+    bullet: tuple[BulletArm, ArmConstants | None] | None = None
+
+
+def motion_scalars(motion: Motion, step: float, tick: float, number: Callable[[float], Any]) -> MotionScalars:
+    """Return the parameters of a motion as scalars.
+
+    Args:
+        motion: The motion.
+        step: Integration step, in s.
+        tick: Time for which torques are held, in s.
+        number: Function that returns the scalar for a number; it is not called for 0, 1 and -1.
+    """
+    robot = motion.robot
+    gravity = [number(value) for value in robot.model.gravity.tolist()]
+    if motion.bullet is not None:
+        model = motion.arms[0].model
+        inertias = constants_of(model, number, gravity) if model.armature.any() else None
+        bullet = bullet_scalars(motion.bullet.arm, number), inertias
+        return MotionScalars(number(motion.bullet.step), number(tick), gravity, (), bullet)
+    arms = []
+    for index, arm in enumerate(motion.arms):
+        own, base = gravity, None
+        if index and motion.ignore_base_rotation:
+            fixed = StageBase(robot, index, ignore_base_rotation=True).rotation.T.dot(robot.model.gravity)
+            own = [number(value) for value in fixed.tolist()]
+        elif index:
+            base = constants_of(robot.model, number, [0.0] * 3, str(robot.stages[index].base_frame))
+        constants = constants_of(arm.model, number, own)
+        arms.append(ArmScalars(constants, friction_scalars(arm.friction, number), base))
+    return MotionScalars(number(step), number(tick), gravity, tuple(arms))
+
+
+def motion_pattern(motion: Motion) -> str:
+    """Return a string that is the same for two motions with the same code."""
+    return repr((motion_scalars(motion, 0.5, 0.5, any_number), [arm.joints for arm in motion.arms]))
+
+
+def expressed_motion(motion: Motion, numbers: MotionScalars, at: Slots, torques: Sequence[Value]) -> list[Part]:
+    """Return the code from the state of one tick to that of the next.
+
+    Args:
+        motion: The motion.
+        numbers: Parameters of the motion.
+        at: Allocator of slots; the state begins with joint positions and velocities, shapes (nq,).
+        torques: Acting torques, shape (nq,).
+    """
+    nq = motion.robot.model.nq
+    if numbers.bullet is not None:
+        return expressed_steps(*numbers.bullet, torques, numbers.gravity, numbers.step, at)
+    bases: list[Part] = []
+    arms: list[Part] = []
+    for arm, own in zip(motion.arms, numbers.arms, strict=True):
+        constants = own.constants
+        if own.base is not None:
+            # Gravity on a mounted stage follows the rotation of its base at the start of the tick.
+            whole = ArmAlgebra(own.base).tip(places(STATE, 0, nq), [0.0] * nq)
+            first, gravity = at.take(SCRATCH, 3)
+            bases.append(put(SCRATCH, first, product(transpose(whole[1]), numbers.gravity)))
+            constants = constants._replace(gravity=gravity)
+        joint, count = arm.joints.start, arm.model.nq
+        algebra = ArmAlgebra(constants)
+        acting: Vector = torques[joint : joint + count]
+        if arm.friction.acts.any():
+            state = places(STATE, joint, count), places(STATE, nq + joint, count)
+            acting = CompiledFriction(algebra, own.friction, *state, at).brake(acting, numbers.tick, arms)
+        Mover(algebra, joint, nq, count, at).move(acting, numbers.step, arms)
+    return [*bases, *arms]
