@@ -139,6 +139,7 @@ def test_a_step_with_other_bits_is_not_used(checked_config, monkeypatch, capsys)
     assert find_step(arm.urdf, arm.model, STEP, 2) is not None
     stepped_bullet.find_arm.cache_clear()
     monkeypatch.setattr(stepped_bullet, "read_answer", lambda _: None)
+    monkeypatch.setattr(stepped_bullet, "write_answer", lambda *_: None)  # other tests share the cache
     monkeypatch.setattr(stepped_bullet, "has_bits_of_bullet", lambda *_: False)
     assert find_step(arm.urdf, arm.model, STEP, 2) is None
     assert "differs from the installed PyBullet, which moves the arm" in capsys.readouterr().err
