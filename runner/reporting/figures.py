@@ -125,25 +125,29 @@ def playback(run: Run, caption: str, until: float | None = None, frames: int = 1
     """
     model, (t, q, tip, desired) = run.model, _motion(run, until)
     shown = spaced_indices(len(t), frames)
-    stills = spaced_indices(len(t), _STILLS)
     moving = bool(np.ptp(desired, axis=0).any())
     path = desired if moving else np.vstack([tip[0], desired[0]])
-    still = (
-        arm_motion(model, q[stills], t[stills].tolist(), path=tip, desired=path, goal=desired[-1]) if has_still else ""
-    )
     return Playback(
         caption,
         t[shown],
         playback_bodies(run.urdf, model, q[shown]),
         tip,
         path,
-        still,
+        still_motion(run, until) if has_still else "",
         origin(run),
         ends=f"failed at {quantity(failure['time'], 's')}" if (failure := run.failure_record) else "",
         tip=tip[shown],
         target=desired[shown],
         joints=joint_places(model, q[shown]),
     )
+
+
+def still_motion(run: Run, until: float | None = None, has_words: bool = True) -> str:
+    """Return the motion of a run as a still picture, up to a time in s; without legend and labels if it is small."""
+    t, q, tip, desired = _motion(run, until)
+    shown = spaced_indices(len(t), _STILLS)
+    path = desired if np.ptp(desired, axis=0).any() else np.vstack([tip[0], desired[0]])
+    return arm_motion(run.model, q[shown], t[shown].tolist(), tip, path, desired[-1], has_words=has_words)
 
 
 def _motion(run: Run, until: float | None) -> tuple[FloatArray, ...]:

@@ -10,7 +10,7 @@ from runner.base import progress
 from runner.base.errors import RunnerError, StoreError
 from runner.base.quantities import with_powers
 from runner.base.sanitize import one_line
-from runner.reporting.figures import playback
+from runner.reporting.figures import still_motion
 from runner.reporting.metric_titles import key_metrics
 from runner.reporting.render import asset, data_uri, script_policy
 from runner.reporting.stored import report_name
@@ -209,6 +209,6 @@ def _thumbnail(row: Row) -> str:
         if isinstance(found, Calibration):
             return empty
         run = next(iter(found.runs())) if isinstance(found, Sweep) else found
-        return playback(run, "", frames=2).still
+        return still_motion(run, has_words=False)
     except (RunnerError, StopIteration, IndexError):
         return empty

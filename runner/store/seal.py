@@ -4,6 +4,7 @@ A damaged file is detected when it is read, and never used. A digest detects acc
 edit. It does not detect forgery, because anyone can compute a new digest.
 """
 
+import copy
 import hashlib
 import json
 import re
@@ -30,6 +31,7 @@ _NAMED = ("runs", "calibrations")  # parents of folders that have the name of th
 # Keys for the location, name and report of a run. They do not affect the simulation.
 _LEFT_OUT = ("caveats", "limits", "outputs", "preset", "spec", "sweep")
 _TRAJECTORIES = Memory(256)
+_PARTS = Memory(512)  # of configs, which in one folder are mostly equal
 _UNUSUAL = re.compile(r"[&?]|\[(?!\])|\{(?!\})|^ {60}|(- ){4}", re.M)
 _BLANK = "0" * 64
 _DIGEST = re.compile(rb'"digest": "([0-9a-f]{64})"')
@@ -300,12 +302,27 @@ def read_job(folder: Path, record_name: str) -> tuple[dict[str, Any], dict[str, 
     text = decode_text(path, read_file(path, record["files"], MEND))
     try:  # the runner writes no aliases or braces, and only these can exceed the bounds; the bounds take time
         ours = len(text) <= STORED.size.most and not _UNUSUAL.search(text)
-        config = yaml.load(text, yaml.CSafeLoader) if ours else read_yaml(text, path)
+        config = _read_parts(text) if ours else read_yaml(text, path)
     except (yaml.YAMLError, YamlError) as error:
         raise DamagedError(f"cannot read {path}: it is damaged: {' '.join(str(error).split())}; {MEND}") from error
     if not isinstance(config, dict):
         raise DamagedError(f"cannot read {path}: it is damaged: it holds no config; {MEND}")
     return record, config
+
+
+def _read_parts(text: str) -> Any:
+    """Return the YAML content of a stored config. Its top-level keys are parsed one by one, and equal ones once."""
+    config: dict[str, Any] = {}
+    for part in re.split(r"^(?=\S)", text, flags=re.MULTILINE):
+        found = copy.deepcopy(_PARTS.recall(_read_yaml, part)) if part else {}
+        if not isinstance(found, dict):
+            return _read_yaml(text)
+        config |= found
+    return config
+
+
+def _read_yaml(text: str) -> Any:
+    return yaml.load(text, yaml.CSafeLoader)
 
 
 def check_job(folder: Path, record_name: str) -> dict[str, Any]:

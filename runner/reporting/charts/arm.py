@@ -27,6 +27,7 @@ def arm_motion(
     desired: FloatArray | None = None,
     goal: FloatArray | None = None,
     camera: Camera | None = None,
+    has_words: bool = True,
 ) -> Figure:
     """Draw an arm at several instants in one picture, light at first and dark at last.
 
@@ -38,14 +39,15 @@ def arm_motion(
         desired: Desired path, shape (M, 3), in m.
         goal: Goal of the tip, shape (3,), in m.
         camera: The view.
+        has_words: Whether it has a legend and labels.
     """
     camera = camera or Camera(32.0, 18.0)
     chains = np.array([[*model.frame_poses(row, model.joint_names)[:, :3, 3], model.tip_position(row)] for row in q])
     figure, axes = scene(5.4, 3.8)
     points = np.vstack([chains.reshape(-1, 3), *(p for p in (path, desired) if p is not None)])
     floor = min(0.0, float(points[:, 2].min())) - 0.05 * model.reach
-    _draw_floor(axes, camera, points, floor)
-    _draw_base(axes, camera, model, floor)
+    _draw_floor(axes, camera, points, floor, has_words)
+    _draw_base(axes, camera, model, floor, has_words)
     for number, chain in enumerate(chains):
         color = _SHADES(number / max(1, len(chains) - 1))
         flat = camera.project(chain)
@@ -60,13 +62,13 @@ def arm_motion(
         axes.plot(*camera.project(desired).T, color=INK, lw=1.0, ls=(0, (4, 2)), zorder=5.5, label="desired path")
     if goal is not None:
         axes.plot(*camera.project(goal), "*", ms=11, mfc=_GOAL, mec="white", mew=0.7, zorder=6, label="goal", ls="none")
-    if axes.get_legend_handles_labels()[0]:
+    if has_words and axes.get_legend_handles_labels()[0]:
         axes.legend(loc="center left", bbox_to_anchor=(1.0, 0.5), frameon=False, fontsize=7.5, handlelength=1.8)
     return figure
 
 
-def _draw_floor(axes: Axes, camera: Camera, points: FloatArray, floor: float) -> None:
-    """Draw a grid on the floor with lines a round distance apart, and say which."""
+def _draw_floor(axes: Axes, camera: Camera, points: FloatArray, floor: float, has_words: bool) -> None:
+    """Draw a grid on the floor with lines a round distance apart, and its label."""
     span = float(np.ptp(points[:, :2], axis=0).max())
     cell = 10.0 ** np.floor(np.log10(max(span, 1e-9)))
     cell = cell / 2.0 if span / cell >= 2.0 else cell / 5.0
@@ -76,16 +78,20 @@ def _draw_floor(axes: Axes, camera: Camera, points: FloatArray, floor: float) ->
         axes.plot(*camera.project(np.array([[x, low[1], floor], [x, high[1], floor]])).T, color=PALE, lw=0.5, zorder=0)
     for y in np.arange(low[1], high[1] + cell / 2.0, cell):
         axes.plot(*camera.project(np.array([[low[0], y, floor], [high[0], y, floor]])).T, color=PALE, lw=0.5, zorder=0)
+    if not has_words:
+        return
     corner = camera.project(np.array([high[0], low[1], floor]))
     axes.annotate(f"grid: {cell:g} m", pair(corner), (0, -4), textcoords="offset points", va="top", ha="center",
                   fontsize=7.5, color=GREY)  # fmt: skip
 
 
-def _draw_base(axes: Axes, camera: Camera, model: RobotModel, floor: float) -> None:
+def _draw_base(axes: Axes, camera: Camera, model: RobotModel, floor: float, has_words: bool) -> None:
     shoulder = model.shoulder
     foot = np.array([shoulder[0], shoulder[1], floor])
     top = shoulder + np.array([0.0, 0.0, 0.6 * model.reach])
     axes.plot(*camera.project(np.array([foot, top])).T, color=GREY, lw=0.8, ls=(0, (9, 2, 2, 2)), zorder=1.2)
+    if not has_words:
+        return
     axes.annotate("base axis", pair(camera.project(top)), (0, 3), textcoords="offset points", ha="center", fontsize=7.5,
                   color=GREY)  # fmt: skip
     triad(axes, camera, np.eye(4), camera.project(foot), 0.2 * model.reach, "", 0.05 * model.reach)
