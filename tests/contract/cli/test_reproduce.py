@@ -13,6 +13,7 @@ from runner.study.execute import make_all
 from runner.study.measured import Measured, finding
 from runner.study.study import load_study
 from runner.sweeps import job as workers
+from runner.sweeps import work
 
 FILES = {
     "study.yaml": "title: T\nsource: S\nabstract: A\nchapters: [one.md, two.md]\n",
@@ -81,6 +82,7 @@ def test_a_run_that_was_cut_short_is_an_error_and_the_report_says_what_is_missin
         return simulate(config, threads)
 
     monkeypatch.setattr(workers, "simulate_run", breaks)
+    monkeypatch.setattr(work, "make_together", lambda *_: (set(), False))
     ending = cli("reproduce", "small", HERE)
     assert ending.code == 1
     assert "runner: small: quintic is missing in the report: cut short: RuntimeError: the machine broke" in ending.err

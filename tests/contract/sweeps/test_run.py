@@ -170,14 +170,15 @@ def test_a_run_in_a_shard_counts_unless_its_trace_is_wanted(sweep, simulated_run
 @pytest.mark.costs(2)
 @pytest.mark.usefixtures("a_limit_of_ticks")
 def test_a_run_that_takes_too_long_is_cut_short(sweep, simulated_runs):
-    ended = sweep("duration=1e4,0.05", "sweep.time_limit=30", "sweep.attempts=2")
+    ticked = "robot.friction.coulomb=0.5"  # its ticks are interpreted, else it may end before the limit
+    ended = sweep("duration=1e4,0.05", ticked, "sweep.time_limit=30", "sweep.attempts=2")
     ((overrides, why, log),) = ended.failures
-    assert overrides[-1] == "duration=10000.0"
+    assert "duration=10000.0" in overrides
     assert why == "cut short: no result within sweep.time_limit, 30 s"
     assert log.read_text().startswith("runner robot=macro duration=10000.0")
     long, short = runs(ended)
     assert (long.status, dict(long.metrics), short.status) == ("failed", {}, "ok")
-    assert sweep("duration=1e4,0.05", "sweep.time_limit=30").failures == ended.failures
+    assert sweep("duration=1e4,0.05", ticked, "sweep.time_limit=30").failures == ended.failures
     assert len(simulated_runs) == 2  # it is not tried again
 
 
@@ -194,13 +195,14 @@ def test_an_error_of_a_part_is_a_failed_run_with_its_traceback(sweep, monkeypatc
     update = part.update
     monkeypatch.setattr(part, "update", fall_over)
     monkeypatch.setattr("runner.sweeps.run.estimate", lambda *_: Estimate(1.0))
-    ended = sweep("seed=0,1")
+    ticked = "robot.friction.coulomb=0.5"  # its ticks are interpreted
+    ended = sweep("seed=0,1", ticked)
     ((_, why, log),) = ended.failures
     assert re.fullmatch(r"cut short: RuntimeError: a bug \(test_run.py, line \d+, in fall_over\)", why)
     assert "Traceback" in log.read_text()
     assert "in fall_over" in log.read_text()
     calls.clear()
-    assert sweep("seed=0,1", "sweep.retry=failed", "sweep.attempts=3").failures == []
+    assert sweep("seed=0,1", ticked, "sweep.retry=failed", "sweep.attempts=3").failures == []
 
 
 def test_an_invalid_cell_is_named_before_anything_starts(sweep, tmp_path, simulated_runs):

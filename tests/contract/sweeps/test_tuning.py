@@ -157,7 +157,8 @@ def test_the_first_failure_may_end_it(tuned):
 
 @pytest.mark.usefixtures("a_limit_of_ticks")
 def test_a_run_that_takes_too_long_failed(tuned):
-    tuning = tuned("duration=interval(1e3,1e4)", "sweep.time_limit=30", trials=1)
+    ticked = "robot.friction.coulomb=0.5"  # its ticks are interpreted, else it ends before the limit
+    tuning = tuned("duration=interval(1e3,1e4)", ticked, "sweep.time_limit=30", trials=1)
     assert tuning.trials[0].failure == "cut short: no result within sweep.time_limit, 30 s"
 
 
