@@ -178,7 +178,8 @@ def test_claims_figures_and_tables_are_places_that_texts_lead_to():
 
 @pytest.mark.parametrize("printed", ["1 s", ""])
 def test_claims_of_a_source_without_values_have_no_column_of_printed_values(printed):
-    claims = [Claim(str(at), "It holds", "", printed if at else "", [ClaimResult("", "1 s", "matches")], "") for at in (0, 1)]
+    found = [ClaimResult("", "1 s", "matches")]
+    claims = [Claim("1", "It holds", "", "", found, ""), Claim("2", "It rests", "", printed, found, "")]
     told = Document("", "", "", [Section("A", [Verdicts("All.", claims)])], "")
     assert ('<th scope="col">printed</th>' in render_html(told)) == bool(printed)
     assert render_html(told).count("<th scope") == 3 + bool(printed) + 2
