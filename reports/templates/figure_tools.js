@@ -17,7 +17,8 @@ const csv = (rows) => rows.map((row) => row.map(cell).join(",") + "\r\n").join("
 
 function rowsOfCurves(panel, title) {
   const [x, y] = [panel.layout.xaxis, panel.layout.yaxis].map((axis) => readable(axis.title.text));
-  return panel.traces.filter((trace) => trace.type === "scatter").flatMap((trace) => {
+  const drawn = panel.traces.filter((trace) => trace.type === "scatter" && numbers(trace.x).some(Number.isFinite));
+  return drawn.flatMap((trace) => {
     const name = panel.traces.find((one) => one.name && one.legendgroup === trace.legendgroup)?.name;
     const heights = numbers(trace.y);
     const curve = readable(name) + (trace.fill ? " (outline of its band)" : "");

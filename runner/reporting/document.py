@@ -206,6 +206,11 @@ class Verdicts:
         """Names of the ways in which each claim was simulated."""
         return [found.words or "simulated" for found in self.rows[0].findings] if self.rows else []
 
+    @property
+    def has_printed(self) -> bool:
+        """True if the source prints a value for a claim."""
+        return any(claim.printed for claim in self.rows)
+
 
 @dataclass(frozen=True)
 class Equations:

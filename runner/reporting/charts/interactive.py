@@ -36,6 +36,7 @@ _LEGEND_WIDTH, _TITLE_WIDTH, _UPRIGHT_WIDTH = 40, 45, 26
 _POINTS = 500  # of a curve on a page: two for each pixel of a panel
 _MOST_NAMES = 16
 _FEW_DECADES = 2
+_GAP: FloatArray = np.array([np.nan])
 _LARGEST = float(np.finfo("<f4").max)
 _UNIT = re.compile(r"\(([^(),]+)\)$")
 
@@ -65,8 +66,8 @@ def _panel(panel: Panel) -> Json:
     chosen = palette.indices([series.color for series in panel.series])
     traces: list[Json] = []
     colors: list[int] = []
-    for number, (series, color) in enumerate(zip(panel.series, chosen, strict=True)):
-        drawn = [*_band(series, number), _trace(series, number, palette.rounds(color)) | _hover(panel, series)]
+    for group, series, color in zip(_groups(panel.series), panel.series, chosen, strict=True):
+        drawn = [*_band(series, group), _trace(series, group, palette.rounds(color)) | _hover(panel, series)]
         traces += drawn
         colors += [color] * len(drawn)
     edges = [edge for series in panel.series for edge in (series.low, series.high) if edge is not None]
@@ -81,6 +82,15 @@ def _panel(panel: Panel) -> Json:
     return {"traces": traces, "colors": colors, "layout": layout}
 
 
+def _groups(curves: Sequence[Series]) -> list[int]:
+    """Return the group of each curve, which a click on a legend entry hides.
+
+    A named curve without points is a key: its group has the nameless curves of its style, too.
+    """
+    keys = {series.style: number for number, series in enumerate(curves) if series.name and not series.x.size}
+    return [number if series.name else keys.get(series.style, number) for number, series in enumerate(curves)]
+
+
 def _named_places(names: Sequence[str]) -> Json:
     """Return an axis with names at the places 0, 1, ...; of many, every other one and so on."""
     step = -(-len(names) // _MOST_NAMES) or 1
@@ -93,7 +103,7 @@ def _named_places(names: Sequence[str]) -> Json:
     }
 
 
-def _trace(series: Series, number: int, rounds: int) -> Json:
+def _trace(series: Series, group: int, rounds: int) -> Json:
     thinned = coarsen(thin(series, _POINTS))
     name = plain(series.name).strip()
     pointed: Json = {"zorder": 1} if series.style in _DASHES else {}  # so that it is seen on a curve without breaks
@@ -115,11 +125,12 @@ def _trace(series: Series, number: int, rounds: int) -> Json:
         "mode": _MODES[series.style],
         "name": _lines(name, _LEGEND_WIDTH),
         "showlegend": bool(name),
-        "legendgroup": str(number),
+        "legendgroup": str(group),
         "line": {"dash": _DASHES.get(series.style, "solid"), "width": 1.7},
         "marker": {"size": 6} | ({"symbol": _SYMBOLS[min(rounds, len(_SYMBOLS)) - 1]} if rounds else {}),
-        "x": _typed(thinned.x),
-        "y": _typed(thinned.y),
+        # Plotly has no legend entry for a curve without points: a gap is a point.
+        "x": _typed(thinned.x if thinned.x.size else _GAP),
+        "y": _typed(thinned.y if thinned.x.size else _GAP),
         **pointed,
     }
 
@@ -140,7 +151,7 @@ def _unit(label: str) -> str:
     return f" {neutral(found[1])}" if found else ""
 
 
-def _band(series: Series, number: int) -> list[Json]:
+def _band(series: Series, group: int) -> list[Json]:
     outline = band(thin(series, _POINTS))
     if outline is None:
         return []
@@ -151,7 +162,7 @@ def _band(series: Series, number: int) -> list[Json]:
             "fill": "toself",
             "hoverinfo": "skip",
             "showlegend": False,
-            "legendgroup": str(number),
+            "legendgroup": str(group),
             "line": {"width": 0},
             "x": _typed(outline[0]),
             "y": _typed(outline[1]),

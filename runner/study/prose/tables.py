@@ -99,13 +99,13 @@ def table(
     by: Sequence[str] = (),
     number: str = "",
 ) -> Table:
-    """Return a table with a row for each run that a pattern stands for.
+    """Return a table with a row for each run that a pattern stands for; one that several stand for is listed once.
 
     Args:
         runs: The runs of the study by name.
         caption: What it lists; inline mathematics as in Text.
         pattern: Names of the runs, with axes in braces, or several of them.
-        columns: Its columns.
+        columns: Its columns; a run has another row where a cell differs, as by its level.
         by: Axes from the outermost to the innermost loop.
         number: Its number in the source.
     """
@@ -113,9 +113,9 @@ def table(
     rows = [row for each in patterns for row in found(runs, each, [axis for axis in by if axis in axes_of(each)])]
     for each in columns:
         _check_levels(each, rows)
-    cells = [[each.cell(runs, row) for each in columns] for row in rows]
+    cells = {(row.run.hash, tuple(each.cell(runs, row) for each in columns)): None for row in rows}
     header = [_header(each, rows) for each in columns]
-    return _table(caption, header, cells, origin(rows[0].run, number))
+    return _table(caption, header, [own for _, own in cells], origin(rows[0].run, number))
 
 
 def _check_levels(given: Column, rows: Sequence[Found]) -> None:

@@ -176,6 +176,15 @@ def test_claims_figures_and_tables_are_places_that_texts_lead_to():
     assert 'href="#figure-3-5" aria-label="Claim 3: to the evidence"' in page
 
 
+@pytest.mark.parametrize("printed", ["1 s", ""])
+def test_claims_of_a_source_without_values_have_no_column_of_printed_values(printed):
+    found = [ClaimResult("", "1 s", "matches")]
+    claims = [Claim("1", "It holds", "", "", found, ""), Claim("2", "It rests", "", printed, found, "")]
+    told = Document("", "", "", [Section("A", [Verdicts("All.", claims)])], "")
+    assert ('<th scope="col">printed</th>' in render_html(told)) == bool(printed)
+    assert render_html(told).count("<th scope") == 3 + bool(printed) + 2
+
+
 def test_the_same_document_gives_the_same_page():
     assert render_html(document()) == render_html(document())
 

@@ -51,3 +51,14 @@ def test_the_page_shows_it_below_the_first_panel():
     assert (first["legend"], second["legend"], first["together"]) == (True, False, True)
     first, second = plotly_spec(Curves("c", [panel("a"), panel("b")]))
     assert (first["legend"], second["legend"], first["together"]) == (True, True, False)
+
+
+def test_a_key_without_points_is_in_the_legend_and_has_the_curves_of_its_style():
+    empty = np.zeros(0)
+    keys = [Series(name, empty, empty, style) for name, style in (("fitted", "line"), ("printed", "dashed"))]
+    drawn = [Series("", X, X, style) for style in ("line", "dashed", "dashed", "dotted")]
+    traces = plotly_spec(Curves("c", [Panel("p", "x (m)", "y (m)", [*keys, *drawn])]))[0]["traces"]
+    assert [trace["showlegend"] for trace in traces] == [True, True, False, False, False, False]
+    assert [trace["legendgroup"] for trace in traces] == ["0", "1", "0", "1", "1", "5"]
+    # Plotly leaves out curves of no points, and their entries with them.
+    assert all(trace["x"]["bdata"] and trace["y"]["bdata"] for trace in traces)

@@ -84,6 +84,14 @@ def test_a_table_has_a_row_for_each_run_and_a_unit_for_each_metric():
     assert (made.origin.number, made.origin.command) == ("table 1", "runner 1.0")
 
 
+def test_a_run_that_two_patterns_stand_for_has_one_row_unless_a_cell_differs():
+    patterns = ["gain/{gain}/full_equations", "gain/1/{preset}"]
+    value = tables.column("error", "error")
+    assert [row[0] for row in tables.table(RUNS, "Errors.", patterns, value).lines[1:]] == ["1", "10", "5", "2"]
+    told = tables.table(RUNS, "Errors.", patterns, tables.level("gain"), value).lines[1:]
+    assert [row[0] for row in told] == ["1", "10", "5", "–", "–"]
+
+
 def test_a_failed_run_says_so():
     runs = planned(PATTERN, {**RUNS, "gain/10/full_equations": run_of(0.0, failed=True)})
     made = tables.table(runs, "Errors.", "gain/{gain}/full_equations", tables.column("error", "error"))
