@@ -171,19 +171,16 @@ class BatchSimulator:
 
     def _simulate(self, runs: Sequence[RunSpec]) -> Iterator[BatchResult | tuple[int, Trace]]:
         """Simulate runs with the same code; indices refer to this sequence."""
-        began, rows, loop_program = time.perf_counter(), max(run.rows for run in runs), runs[0].loop_program
+        rows, loop_program = max(run.rows for run in runs), runs[0].loop_program
         times = np.arange(rows, dtype=np.float64) * loop_program.tick
         paths = [self._desired(run, times) for run in runs]
         alike = all(path is paths[0] for path in paths)
         errors = draw_errors(runs, rows)
         values, start = _inputs(runs, [wrong[:, 0] for wrong in errors])
-        found = run_all(
-            loop_program,
-            values,
-            self._shared(runs if not alike else runs[:1], times, paths),
-            errors,
-            start,
-        )
+        shared = self._shared(runs if not alike else runs[:1], times, paths)
+        loop_program.code_for(len(runs))  # loaded before the clock starts
+        began = time.perf_counter()
+        found = run_all(loop_program, values, shared, errors, start)
         seconds, well = (time.perf_counter() - began) / (len(runs) * rows), _ended_well(found)
         for place in np.flatnonzero(found.stopped).tolist():
             yield _by_ticks(runs[place], place)

@@ -68,6 +68,10 @@ class LoopProgram:
             self.commands.are_ours,
         )
 
+    def code_for(self, runs: int) -> Program:
+        """Return the compiled code for a number of runs; see `program`."""
+        return self.program(1 if runs == 1 else LANES)
+
     def express(self, at: Slots, number: Callable[[float], Any]) -> Expressed:
         """Return the expressions in new slots, with numbers converted by `number`.
 
@@ -136,7 +140,7 @@ def run_all(
         CannotCompileError: if a control law has no compiled form.
     """
     count, ticks = len(start), shared.shape[-2]
-    code = loop_program.program(1 if count == 1 else LANES)
+    code = loop_program.code_for(count)
     frame = code.frame(ticks, loop_program.delay, loop_program.steps)
     nq, stages = len(loop_program.commands.limits.max), len(loop_program.motion.robot.stages)
     found = Rows.new(np.empty, (count, ticks), nq, stages)._replace(stopped=np.zeros(count, dtype=bool))
