@@ -80,8 +80,8 @@ _MATHEMATICS = re.compile(r"\$[^$]*\$")
 _NUMBER = re.compile(r"\d+(?:\.\d+)?(?: [a-zA-Z%]+)?")
 # Names that hold a digit: parts of the source, of the arm, and of what the studies number.
 _NAMED = re.compile(
-    r"\b(?:[Ff]igures?|[Ss]ections?|[Tt]ables?|[Cc]laims?|[Cc]hapters?|[Ee]quations?|[Mm]ethods?|[Jj]oints?|[Ll]inks?|"
-    r"[Ff]rames?|[Pp]oses?|Mini|xArm|Meca|rk|RK|q)"
+    r"\b(?:[Ff]igures?|[Ss]ections?|[Pp]ages?|[Tt]ables?|[Cc]laims?|[Cc]hapters?|[Ee]quations?|[Mm]ethods?|[Jj]oints?|"
+    r"[Ll]inks?|[Ff]rames?|[Pp]oses?|Mini|xArm|Meca|rk|RK|q)"
     r"[ -]?\(?\d+(?:\.\d+)*(?:(?:, | and | or | to )\d+(?:\.\d+)*)*|^\d[a-c]?\. "
 )
 

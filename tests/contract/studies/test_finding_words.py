@@ -33,6 +33,8 @@ def test_the_lint_finds_typed_numbers_and_no_others(tmp_path):
         ["0.2 kg", "12 s"],
     )
     assert lint(tmp_path, "'3 times as good', f'{error} {more}'") == ["3 times", "7 m"]
-    assert lint(tmp_path, "'6b. Figure 5.3 and claims 8, 9', f'$x_3 = 4$ of {error:.3g} (3.32), joint 2'") == ["3.32"]
+    assert lint(tmp_path, "'6b. Figure 5.3, page 65 and claim 8', f'$x_3 = 4$ of {error:.3g} (3.32), joint 2'") == [
+        "3.32"
+    ]
     levels = (("case", "servo, 16.7 ms"), ("axis", "1 ms"))
     assert lint(tmp_path, "'At 1 ms', f'and 16.7 ms {error}'", levels) == []

@@ -82,7 +82,7 @@ SOME = {
 @pytest.mark.parametrize(
     ("study", "runs", "calibrations"),
     [
-        ("thesis", 275, 0),
+        ("thesis", 295, 0),
         ("thesis_beyond", 267, 0),
         ("xarm7", 119, 0),
         ("meca500", 244, 36),

@@ -110,7 +110,7 @@ def test_the_full_profile_raises_the_seeds_alone() -> None:
     whole, full = (load_study("thesis", profile=profile).jobs() for profile in ("", "full"))
     assert {name for name in whole if name not in full} == {name for name in whole if name.startswith("sure/")}
     more = {name: job for name, job in full.items() if name not in whole}
-    assert len(more) == 20
+    assert len(more) == 22
     assert all(job[-1] == "repetitions=10000" and "plant=rk4" in job for job in more.values())
     assert all(full[name] == job for name, job in whole.items() if name in full)
 
