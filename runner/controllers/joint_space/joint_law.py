@@ -88,12 +88,13 @@ class JointMotion:
         joints: True if the desired motion is a joint motion.
 
     Raises:
-        ConfigError: if the arm has fewer joints than the task has dimensions.
+        ConfigError: if the desired motion is one of the tip and the arm has fewer joints than the task has dimensions.
     """
 
     def __init__(self, model: RobotModel, config: JointLawConfig, rest: FloatArray, joints: bool) -> None:
         self._joints, self._feedforward = joints, config.feedforward
-        self._task = TipTask(model, held_orientation(config.task, model, rest), config)
+        # A joint motion needs no task, which an arm of two joints may lack.
+        self._task = TipTask(model, None if joints else held_orientation(config.task, model, rest), config)
         posture = PostureTask(config.null_space_frequency, rest).parameters
         self.parameters = JointMotionParameters(self._task.parameters, posture, config.period)
 
