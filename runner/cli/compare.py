@@ -230,6 +230,7 @@ def _recording_text(found: "RecordingComparison") -> str:
         "",
         terminal(Table("", ["metric", "unit", *numbers("run", "recording")], metrics), indent=""),
         "",
+        *words.lag_lines(found),
         *words.friction_lines(found),
     ]
     identified = friction(found)

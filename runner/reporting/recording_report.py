@@ -32,7 +32,14 @@ def recording_document(found: RecordingComparison) -> Document:
         sections=[
             Section("Both signals", [_both_curves(found)]),
             Section("Residuals", [residuals(found), _residual_curves(found), Text(f"The {words.FIT}.")]),
-            Section("Time offset", [Text(literal(f"{capital(words.aligned_text(found))}.")), _lag_curves(found)]),
+            Section(
+                "Time offset",
+                [
+                    Text(literal(f"{capital(words.aligned_text(found))}.")),
+                    *(Text(literal(line)) for line in words.lag_lines(found)),
+                    _lag_curves(found),
+                ],
+            ),
             Section("Friction", _friction(found)),
             Section("Metrics of both", _metrics(found)),
             Section("Provenance", _made(found)),
@@ -128,9 +135,10 @@ def _metrics(found: RecordingComparison) -> list[Block]:
     text = (
         f"Both are computed by the same code, from {quantity(first, 's')} to {quantity(last, 's')}. Speeds of the "
         "recording are differences of its positions behind the low-pass. Its tip, where it is not recorded, "
-        "follows from the joints by the run's model. A constant delay of the arm is part of the time offset and not "
-        "of the tracking errors."
+        "follows from the joints by the run's model. "
     )
+    if not found.by_commands:
+        text += "A constant delay of the arm is part of the time offset and not of the tracking errors."
     header = ["metric", Column("name on the command line", "code"), *numbers("run", "recording")]
     return [Text(text), Table("Metrics of both.", header, rows)]
 

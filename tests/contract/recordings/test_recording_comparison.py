@@ -7,7 +7,7 @@ from runner.base.errors import RunnerError
 from runner.recordings.columns_map import Signal
 from runner.recordings.compare import compare_recording
 from runner.recordings.setting import setting_of
-from runner.recordings.words import aligned_text
+from runner.recordings.words import aligned_text, lag_lines
 from runner.sweeps.job import run
 
 JOINTS = "a1: {joint: q1, unit: rad}, a2: {joint: q2, unit: rad}, a3: {joint: q3, unit: rad}"
@@ -114,6 +114,29 @@ def test_commanded_positions_are_read_and_not_compared(compared):
     found = compared(commanded)
     assert [one.signal.words for one in found.residuals] == ["position of q1", "position of q2"]
     assert Signal("reference", "q3") in found.recording.signals
+
+
+def test_a_lag_behind_the_commands_is_no_time_offset(stored, compared):
+    """All joints of the log move 30 ms later than in the run; without its commands this would be its offset."""
+    desired = setting_of(stored).desired_joints
+
+    def late(frame):
+        t = frame["t"].to_numpy()
+        for j in (1, 2, 3):
+            frame[f"d{j}"] = desired[:, j - 1]
+            frame[f"a{j}"] = np.interp(t - 0.03, t, frame[f"a{j}"])
+        return frame
+
+    commands = ", ".join(f"d{j}: {{reference: q{j}, unit: rad}}" for j in (1, 2, 3))
+    alone = compared(JOINTS, change=late)
+    assert (alone.offset.start, alone.lags, alone.by_commands) == (pytest.approx(0.03, abs=5e-4), {}, False)
+    found = compared(f"{JOINTS}, {commands}", change=late)
+    assert found.offset.start == pytest.approx(0.0, abs=1e-6)
+    for log, run_ in found.lags.values():
+        assert log - run_ == pytest.approx(0.03, abs=1e-3)
+        assert run_ == pytest.approx(0.0, abs=2e-3)
+    assert "by the commanded positions" in aligned_text(found)
+    assert next(lag_lines(found)).startswith("Joints move later than their commands: q1 30")
 
 
 def test_a_part_of_a_run(compared):
