@@ -240,7 +240,8 @@ def friction_of(model: RobotModel, recording: Recording) -> tuple[Friction | Non
         model = model.with_change(lambda pin_model: setattr(pin_model, "gravity", pin.Motion.Zero()))
     if recording.side == "link":
         model = model.with_armature(np.zeros(model.nq))
-    return identify_friction(model, even, np.column_stack(torques), recording.period), ""
+    rotors = recording.side == "motor"
+    return identify_friction(model, even, np.column_stack(torques), recording.period, rotors), ""
 
 
 def _simulated_friction(run: Run, joints: Sequence[str]) -> dict[str, tuple[float, float]]:

@@ -79,5 +79,19 @@ def friction_lines(found: RecordingComparison) -> Iterator[str]:
             yield BEHIND_GEARS
         yield AMONG_MASSES
         yield ONE_LOG
+    below = [
+        f"{joint.joint} {kind}"
+        for joint in found.friction.joints
+        for kind, value, half in (
+            ("viscous", joint.viscous, joint.viscous_half),
+            ("Coulomb", joint.coulomb, joint.coulomb_half),
+        )
+        if value + half < 0.0
+    ]
+    if below:
+        yield (
+            f"Below zero, with the whole interval: {', '.join(below)}. No friction is: the torques are late, of "
+            "another kind than the column map says, or hold what the equations lack."
+        )
     for reason in found.friction.lacking:
         yield f"Friction cannot be identified of {reason}."

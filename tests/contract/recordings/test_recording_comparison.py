@@ -1,13 +1,16 @@
 """Recordings compared with a run: of the run itself, and of a part of its signals."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
 from runner.base.errors import RunnerError
 from runner.recordings.columns_map import Signal
 from runner.recordings.compare import compare_recording
+from runner.recordings.friction import Friction, JointFriction
 from runner.recordings.setting import setting_of
-from runner.recordings.words import aligned_text, lag_lines
+from runner.recordings.words import aligned_text, friction_lines, lag_lines
 from runner.sweeps.job import run
 
 JOINTS = "a1: {joint: q1, unit: rad}, a2: {joint: q2, unit: rad}, a3: {joint: q3, unit: rad}"
@@ -137,6 +140,16 @@ def test_a_lag_behind_the_commands_is_no_time_offset(stored, compared):
         assert run_ == pytest.approx(0.0, abs=2e-3)
     assert "by the commanded positions" in aligned_text(found)
     assert next(lag_lines(found)).startswith("Joints move later than their commands: q1 30")
+
+
+def test_friction_below_zero_is_named(stored, compared):
+    found = compared(JOINTS)
+    joints = [
+        JointFriction("q1", "rad", -6.4, 1.6, 0.1, 0.2, 0.0, np.zeros(1), np.zeros(1)),
+        JointFriction("q2", "rad", 3.3, 1.9, -0.1, 0.2, 0.0, np.zeros(1), np.zeros(1)),
+    ]
+    (line,) = (line for line in friction_lines(replace(found, friction=Friction(joints, [], 10.0))) if "Below" in line)
+    assert line.startswith("Below zero, with the whole interval: q1 viscous. No friction is")
 
 
 def test_a_part_of_a_run(compared):
