@@ -83,6 +83,7 @@ class RecordingComparison:
 
     Attributes:
         run: The run.
+        model: Its model of the arm.
         recording: The recording.
         offset: When the run began on the recording's clock.
         residuals: Each recorded signal and the run's, at the run's ticks.
@@ -96,6 +97,7 @@ class RecordingComparison:
     """
 
     run: Run
+    model: RobotModel
     recording: Recording
     offset: Offset
     residuals: Sequence[Residual]
@@ -168,6 +170,7 @@ def compare_recording(run: Run, path: Path, columns: Path, fill_gaps: float = 0.
     friction, reason = friction_of(setting.config.arm.model, recording)
     return RecordingComparison(
         run=run,
+        model=setting.config.arm.model,
         recording=recording,
         offset=offset,
         residuals=[Residual(s, units[s], trace.t[ticks], recorded[s], simulated[s]) for s in recorded],

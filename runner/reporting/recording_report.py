@@ -9,6 +9,7 @@ from runner.base.quantities import above_rounding, label_with_unit, quantity
 from runner.plugins.metric_units import unit_of
 from runner.recordings import digest_of, words
 from runner.recordings.compare import RecordingComparison, Residual
+from runner.recordings.verdict import verdict_lines
 from runner.reporting.charts.figure import spaced_indices
 from runner.reporting.document import Block, Curves, Document, Notice, Panel, Provenance, Section, Series, Table, Text
 from runner.reporting.figures import origin
@@ -30,8 +31,8 @@ def recording_document(found: RecordingComparison) -> Document:
         subtitle=literal(f"{found.recording.path.name} against run {found.run.hash}"),
         abstract=literal(_abstract(found)),
         sections=[
+            Section("Residuals", [_residual_curves(found), residuals(found), Text(f"The {words.FIT}.")]),
             Section("Both signals", [_both_curves(found)]),
-            Section("Residuals", [residuals(found), _residual_curves(found), Text(f"The {words.FIT}.")]),
             Section(
                 "Time offset",
                 [
@@ -61,9 +62,7 @@ def report_folder(found: RecordingComparison) -> Path:
 
 def _abstract(found: RecordingComparison) -> str:
     text = f"The recording is compared with repetition 0 of the run, at the run's ticks; {words.aligned_text(found)}."
-    if found.friction is None:
-        return f"{text} {next(words.friction_lines(found))}"
-    return text
+    return "\n".join([" ".join(verdict_lines(found)), text])
 
 
 def _key_numbers(found: RecordingComparison) -> list[tuple[str, str, str]]:

@@ -1,8 +1,10 @@
 """Recordings compared with a run: of the run itself, and of a part of its signals."""
 
+import re
 from dataclasses import replace
 
 import numpy as np
+import pinocchio as pin
 import pytest
 
 from runner.base.errors import RunnerError
@@ -10,6 +12,8 @@ from runner.recordings.columns_map import Signal
 from runner.recordings.compare import compare_recording
 from runner.recordings.friction import Friction, JointFriction
 from runner.recordings.setting import setting_of
+from runner.recordings.smoothing import derivative
+from runner.recordings.verdict import explained, verdict_lines
 from runner.recordings.words import aligned_text, friction_lines, lag_lines
 from runner.sweeps.job import run
 
@@ -150,6 +154,51 @@ def test_friction_below_zero_is_named(stored, compared):
     ]
     (line,) = (line for line in friction_lines(replace(found, friction=Friction(joints, [], 10.0))) if "Below" in line)
     assert line.startswith("Below zero, with the whole interval: q1 viscous. No friction is")
+
+
+@pytest.mark.parametrize("cause", ["friction", "rotor inertia", "a payload", "a constant"])
+def test_the_cause_of_the_torques_differences_is_named(stored, compared, cause):
+    """The recorded torques are the run's with one cause; it alone explains nearly all of the differences."""
+    model = setting_of(stored).config.arm.model
+
+    def caused(frame):
+        q, dq = (np.column_stack([frame[f"{name}{j}"] for j in (1, 2, 3)]) for name in ("a", "dq"))
+        ddq = derivative(dq, 0.002)
+
+        def dynamics(arm):
+            data = arm.pin_model.createData()
+            return np.array([pin.rnea(arm.pin_model, data, *row) for row in zip(q, dq, ddq, strict=True)])
+
+        more = {
+            "friction": lambda: 0.8 * dq + 0.5 * np.sign(dq),
+            "rotor inertia": lambda: ddq * [0.4, 0.2, 0.3],
+            "a constant": lambda: np.full(q.shape, 1.0),
+            "a payload": lambda: dynamics(model.with_payload(1.5)) - dynamics(model),
+        }[cause]()
+        return frame.assign(**{f"c{j}": frame[f"c{j}"] + more[:, j - 1] for j in (1, 2, 3)})
+
+    found = compared(f"{JOINTS}, {TORQUES}", change=caused)
+    shares = explained(found)
+    assert max(shares, key=shares.get) == cause
+    assert shares[cause] > 0.95
+    text = " ".join(verdict_lines(found))
+    assert re.match(
+        r"Over 1.5 s the model predicts positions within .* rad for 95 % of the time \(q\d\) and torques to", text
+    )
+    assert re.search(rf"{cause} (9\d|100) %", text)
+    assert "a lag of the arm, as it holds no commands" in text
+
+
+def test_the_accuracy_is_that_of_the_differences(stored, compared):
+    def off(frame):
+        return frame.assign(a2=frame["a2"] + 0.004, c1=1.1 * frame["c1"], c2=frame["c2"], c3=frame["c3"])
+
+    text = next(verdict_lines(compared(f"{JOINTS}, {TORQUES}", change=off)))
+    assert "within 4.00·10⁻³ rad for 95 % of the time (q2)" in text
+    assert "(q1: 9.1 %)" in text
+    of_tip = list(verdict_lines(compared(TIP)))
+    assert "the tip's coordinates within" in of_tip[0]
+    assert "masses, as it holds no torques" in of_tip[-1]
 
 
 def test_a_part_of_a_run(compared):
