@@ -232,7 +232,7 @@ class _Match:
         """Return whether the recording covers the whole of a run that rests at an end, or is as long as it is."""
         lasts, logged = self._run_t[-1] - self._run_t[0], self._t[-1] - self._t[0]
         known = bool(self._resting_ends()) or abs(logged - lasts) < _AS_LONG * lasts
-        return known and self.covered(start) > lasts - max(2.0 * self._near, _AS_LONG * lasts)
+        return bool(known and self.covered(start) > lasts - max(2.0 * self._near, _AS_LONG * lasts))
 
     def rests(self, start: float) -> bool:
         """Return whether the recording rests before and after the run, where the run starts and ends at rest."""
