@@ -213,6 +213,7 @@ def _print_recording(folder: Path, recording: Path, options: Namespace) -> None:
 def _recording_text(found: "RecordingComparison") -> str:
     from runner.plugins.metric_units import unit_of
     from runner.recordings import words
+    from runner.recordings.verdict import verdict_lines
     from runner.reporting.recording_report import friction, residuals
     from runner.reporting.table import Cell, Number, Table, numbers, terminal
 
@@ -220,6 +221,8 @@ def _recording_text(found: "RecordingComparison") -> str:
         [name, unit_of(name) or "", *map(Number, both)] for name, both in found.metrics.items()
     ]
     parts = [
+        *verdict_lines(found),
+        "",
         f"run        {found.run.folder}",
         f"recording  {found.recording.path}",
         one_line(words.aligned_text(found)),
@@ -230,6 +233,7 @@ def _recording_text(found: "RecordingComparison") -> str:
         "",
         terminal(Table("", ["metric", "unit", *numbers("run", "recording")], metrics), indent=""),
         "",
+        *words.lag_lines(found),
         *words.friction_lines(found),
     ]
     identified = friction(found)

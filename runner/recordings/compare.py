@@ -1,6 +1,6 @@
 """Comparison of a recording with a run: time alignment, signals, metrics and friction."""
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
 
@@ -12,9 +12,9 @@ from runner.base.errors import RunnerError
 from runner.recordings.columns_map import Signal, other_units, read_map
 from runner.recordings.consistency import check_consistency
 from runner.recordings.friction import Friction, identify_friction
-from runner.recordings.offset import Offset, find_offset
+from runner.recordings.offset import Offset, find_lag, find_offset
 from runner.recordings.recording import FEWEST_ROWS, Recording, read_recording
-from runner.recordings.setting import both_metrics, setting_of
+from runner.recordings.setting import Setting, both_metrics, setting_of
 from runner.recordings.smoothing import cutoff, derivative, evenly, low_pass
 from runner.robots.model import RobotModel
 from runner.store import Run
@@ -83,6 +83,7 @@ class RecordingComparison:
 
     Attributes:
         run: The run.
+        model: Its model of the arm.
         recording: The recording.
         offset: When the run began on the recording's clock.
         residuals: Each recorded signal and the run's, at the run's ticks.
@@ -90,9 +91,13 @@ class RecordingComparison:
         friction: What was identified; None where nothing could be.
         no_friction: Why nothing could be; empty otherwise.
         simulated_friction: Viscous and Coulomb friction of each joint in the run, by joint.
+        lags: How much later than its command each joint moves, by joint, in s: in the recording, and in the run, NaN if
+            its desired motion is not one of joints.
+        by_commands: Whether the run was aligned by commanded positions, so that a lag of the arm is not in the offset.
     """
 
     run: Run
+    model: RobotModel
     recording: Recording
     offset: Offset
     residuals: Sequence[Residual]
@@ -100,6 +105,8 @@ class RecordingComparison:
     friction: Friction | None
     no_friction: str
     simulated_friction: Mapping[str, tuple[float, float]]
+    lags: Mapping[str, tuple[float, float]]
+    by_commands: bool
 
     @property
     def span(self) -> tuple[float, float]:
@@ -131,12 +138,14 @@ def compare_recording(run: Run, path: Path, columns: Path, fill_gaps: float = 0.
     moving = [signal for signal in recording.signals if signal.kind in ("position", "tip")]
     if not moving:
         raise RunnerError(f"{columns}: columns: needs the position of a joint, or a coordinate of the tip")
+    commands = [] if setting.desired_joints is None else recording.of_kind("reference")
+    aligned = commands or moving
     offset = find_offset(
         recording.t,
-        np.column_stack([recording.signals[signal] for signal in moving]),
+        np.column_stack([recording.signals[signal] for signal in aligned]),
         trace.t,
-        np.column_stack([setting.signal(signal) for signal in moving]),
-        [f"columns.{recording.columns[signal]}" for signal in moving],
+        np.column_stack([setting.signal(signal) for signal in aligned]),
+        [f"columns.{recording.columns[signal]}" for signal in aligned],
     )
     ticks, at = _covered(recording, trace.t, offset)
     middle = at + 0.5 * float(np.median(np.diff(trace.t)))  # the run's torques act from tick to tick
@@ -161,6 +170,7 @@ def compare_recording(run: Run, path: Path, columns: Path, fill_gaps: float = 0.
     friction, reason = friction_of(setting.config.arm.model, recording)
     return RecordingComparison(
         run=run,
+        model=setting.config.arm.model,
         recording=recording,
         offset=offset,
         residuals=[Residual(s, units[s], trace.t[ticks], recorded[s], simulated[s]) for s in recorded],
@@ -168,7 +178,23 @@ def compare_recording(run: Run, path: Path, columns: Path, fill_gaps: float = 0.
         friction=friction,
         no_friction=reason,
         simulated_friction=_simulated_friction(run, trace.joint_names),
+        lags=dict(_lags(recording, setting)),
+        by_commands=bool(commands),
     )
+
+
+def _lags(recording: Recording, setting: Setting) -> Iterator[tuple[str, tuple[float, float]]]:
+    """Yield how much later each joint moves than its command, in the recording and in the run, in s."""
+    trace = setting.trace
+    for command in recording.of_kind("reference"):
+        position = Signal("position", command.of)
+        own = recording.signals.get(position)
+        if own is None or not np.ptp(recording.signals[command]):
+            continue
+        wanted = setting.desired_joints
+        place = trace.joint_names.index(command.of)
+        run = np.nan if wanted is None else find_lag(trace.t, trace.q[:, place], wanted[:, place])
+        yield command.of, (find_lag(recording.t, own, recording.signals[command]), run)
 
 
 def _covered(recording: Recording, t: FloatArray, offset: Offset) -> tuple[slice, FloatArray]:
@@ -217,7 +243,8 @@ def friction_of(model: RobotModel, recording: Recording) -> tuple[Friction | Non
         model = model.with_change(lambda pin_model: setattr(pin_model, "gravity", pin.Motion.Zero()))
     if recording.side == "link":
         model = model.with_armature(np.zeros(model.nq))
-    return identify_friction(model, even, np.column_stack(torques), recording.period), ""
+    rotors = recording.side == "motor"
+    return identify_friction(model, even, np.column_stack(torques), recording.period, rotors), ""
 
 
 def _simulated_friction(run: Run, joints: Sequence[str]) -> dict[str, tuple[float, float]]:

@@ -1,12 +1,16 @@
 r"""Friction of an arm's joints, identified from recorded positions and torques.
 
-.. math:: \tau - (M \ddot q + V + G) = Y(q, \dot q, \ddot q)\, \Delta\theta + b\, \dot q + c\, \mathrm{sgn}\, \dot q + o
+.. math::
+
+    \tau - (M \ddot q + V + G) = Y(q, \dot q, \ddot q)\, \Delta\theta + \Delta I\, \ddot q + b\, \dot q +
+    c\, \mathrm{sgn}\, \dot q + o
 
 M, V and G are from the run's model, b is viscous friction, c Coulomb friction and o a constant of each joint.
 
-Delta theta are the differences in masses and inertias between the recorded arm and the model. With this term they do
-not affect the friction. Y is the linear model of rigid bodies (Atkeson, An and Hollerbach, International Journal of
-Robotics Research 5(3), 1986).
+Delta theta are the differences in masses and inertias between the recorded arm and the model, and Delta I those in
+reflected inertias of the rotors, which few makers publish. With these terms they do not affect the friction. Y is the
+linear model of rigid bodies (Atkeson, An and Hollerbach, International Journal of Robotics Research 5(3), 1986).
+Sensors behind the gears feel no rotors; Delta I is 0 then.
 
 Positions are differentiated after a low-pass filter that leaves the motion unchanged. Both sides of the equation then
 pass a lower low-pass filter, all without delay. They are decimated to independent samples (Gautier, Dynamic
@@ -103,7 +107,9 @@ class Friction:
         return pd.DataFrame(rows, columns=list(columns)).set_index("joint")
 
 
-def identify_friction(model: RobotModel, q: FloatArray, torques: FloatArray, period: float) -> Friction:
+def identify_friction(
+    model: RobotModel, q: FloatArray, torques: FloatArray, period: float, rotors: bool = True
+) -> Friction:
     """Return the friction of the joints of an arm.
 
     Args:
@@ -111,6 +117,7 @@ def identify_friction(model: RobotModel, q: FloatArray, torques: FloatArray, per
         q: Recorded joint positions, even samples, shape (N, nq), in rad.
         torques: Recorded joint torques, shape (N, nq), in N m; NaN throughout for a joint without.
         period: Time between two samples, in s.
+        rotors: Whether the torques turn the rotors, whose inertias may differ from the model's.
     """
     frequency = cutoff(period)
     first = min(_FIRST * frequency, 0.25 / period)
@@ -126,6 +133,9 @@ def identify_friction(model: RobotModel, q: FloatArray, torques: FloatArray, per
     pin_model, data = pin.Model(model.pin_model), model.pin_model.createData()
     rigid = np.array([pin.rnea(pin_model, data, *row) for row in rows])
     Y = np.array([pin.computeJointTorqueRegressor(pin_model, data, *row).copy() for row in rows])
+    if rotors:
+        ddq = np.array([row[2] for row in rows])
+        Y = np.concatenate([Y, ddq[:, :, None] * np.eye(model.nq)], axis=2)
     edge, apart = round(_SPOILT / (frequency * period)), max(1, int(0.5 / (frequency * period)))
     thinned = np.arange(edge, len(q) - edge, apart)
     fastest = np.abs(dq).max(axis=0)
@@ -148,7 +158,7 @@ def identify_friction(model: RobotModel, q: FloatArray, torques: FloatArray, per
     for part, fitted in zip(parts, _fit(parts), strict=True):
         name = model.joint_names[part.joint]
         if fitted is None:
-            lacking.append(f"{name}: its motion does not tell friction from other masses")
+            lacking.append(f"{name}: its motion does not tell friction from other masses and inertias")
         else:
             found.append(JointFriction(name, model.joint_units[part.joint], *fitted))
     return Friction(found, lacking, frequency)
@@ -172,7 +182,7 @@ def _unusable(torques: FloatArray, speed: FloatArray) -> str:
 
 @dataclass(frozen=True)
 class _Part:
-    """The rows of a joint behind the low-pass: residual torque, speed, sign of the speed, Y of shape (N, 10 nq)."""
+    """The rows of a joint behind the low-pass: residual torque, speed, its sign, Y with the rotors' columns."""
 
     joint: int
     blocks: NDArray[np.intp]

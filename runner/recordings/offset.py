@@ -6,8 +6,10 @@ v is the speed of a signal in the recording and w in the run, both after the sam
 are over the times that both cover. A norm counts at least half of its maximum over all lags, so that no lag with little
 motion is chosen.
 
-The maximum is refined by least squares over the positions, each less its mean difference, so that other zeros of the
-encoders have no effect.
+The correlation of a log that is cut off in motion has its maximum beside the right lag, as the ends weigh against it.
+So each of its peaks is moved to the nearest minimum of the differences of positions, each less its mean difference, so
+that other zeros of the encoders have no effect. The peak with the smallest differences is chosen. Where several are
+alike, the arm is asked to rest before and after the run, if the run does; and then the lag that covers most is chosen.
 """
 
 from collections.abc import Sequence
@@ -30,6 +32,20 @@ _MOST_SAMPLES = 200_000
 _STILL = 0.01  # of the largest speed of the run: a signal that is slower tells nothing of the time
 _OF_LARGEST = 0.25  # of the square of the largest norm
 _AS_GOOD = 0.95  # of the largest correlation
+_PEAK = 0.8  # of the largest correlation, from which on a peak is tried
+_MOST_PEAKS = 40
+_MOST_ROWS = 5_000  # at which peaks are compared
+_ALIKE = 1.5  # times the least mean square of differences: what fits as well
+_LEAST_SQUARE = 1e-8  # of the square of the swing: rounding and interpolation
+_FARTHEST = 0.1  # s, from a peak of the correlation to a minimum of the differences, or five windows
+_WINDOW = 2e-3  # s, half of it at least
+_AT_BOUND = 0.98  # of the window
+_RESTING = 0.01  # of the largest speed of a signal
+_VISIBLY = 0.05  # of the swing of a signal, in a time in which an arm outside of the run must rest
+_AS_LONG = 0.01  # relative difference of the lengths of a log and of the run whose motion was made from it
+_LONGEST_LAG = 0.5  # s, of a joint behind its command
+_SAME = 0.02  # s, between two minima that are one
+_FEWEST = 10  # rows
 _MORE_COVERED = 1.25  # times what the best lag covers
 _CLEARLY = 0.9  # correlation of what is the same motion, though maybe at another rate
 _SURELY = 0.98  # above which no other rate is looked for
@@ -45,13 +61,15 @@ class Offset:
         start: Time of the recording at which the run's time is zero, in s.
         lags: Such times that were tried, shape (L,), in s.
         correlations: c at each, shape (L,).
-        rivals: Other times at which c is nearly as large, in s; the motion repeats itself.
+        rivals: Other times at which positions fit as well, in s; the motion repeats itself, and the log does not tell.
+        open_ended: Whether no minimum of the differences was found near it: the differences still decrease there.
     """
 
     start: float
     lags: FloatArray
     correlations: FloatArray
     rivals: tuple[float, ...]
+    open_ended: bool = False
 
 
 def find_offset(
@@ -97,10 +115,25 @@ def find_offset(
         )
     if correlations[best] < _SURELY:
         _check_likeness(t, recorded, run_t, simulated, float(correlations[best]))
-    start = _refined(t, recorded, run_t, simulated, float(lags[best]))
-    peaks, _ = find_peaks(correlations, height=_AS_GOOD * correlations[best])
-    rivals = tuple(float(lags[peak]) for peak in peaks if peak != best)
-    return Offset(start, lags, correlations, rivals)
+    peaks, _ = find_peaks(correlations, height=_PEAK * correlations[best])
+    peaks = np.append(best, peaks[np.argsort(-correlations[peaks])][:_MOST_PEAKS])
+    match = _Match(t, recorded, run_t, simulated)
+    start, rivals, open_ended = _chosen(match, lags[peaks].tolist())
+    return Offset(start, lags, correlations, rivals, open_ended)
+
+
+def find_lag(t: FloatArray, measured: FloatArray, commanded: FloatArray) -> float:
+    """Return how much later a joint moves than its command, in s, by the least differences of positions.
+
+    Args:
+        t: Times, shape (N,), in s.
+        measured: Positions, shape (N,), in rad.
+        commanded: Commanded ones at the same times.
+    """
+    pair = measured[:, None], t, commanded[:, None]
+    lags, correlations, _ = _correlate(t, *pair)
+    near = np.abs(lags) <= _LONGEST_LAG
+    return _Match(t, *pair).refined(float(lags[near][int(np.argmax(correlations[near]))]))[0]
 
 
 def _at_full_overlap(
@@ -113,7 +146,11 @@ def _at_full_overlap(
     covered = np.minimum(log[1], run[1] + lags) - np.maximum(log[0], run[0] + lags)
     surely = np.where((whatever_sign > _SURELY) & (each.min(axis=1) < -RESEMBLES), covered, 0.0)
     other = int(np.argmax(surely * whatever_sign))
-    return other if surely[other] > _MORE_COVERED * covered[best] else best
+    fits = each.sum(axis=1)
+    alike = covered[
+        fits >= min(_AS_GOOD * fits[best], fits[best])
+    ].max()  # a motion that repeats itself fits elsewhere, too
+    return other if surely[other] > _MORE_COVERED * alike else best
 
 
 def _correlate(
@@ -149,21 +186,87 @@ def _speeds(t: FloatArray, signals: FloatArray, step: float, frequency: float) -
     return derivative(low_pass(evenly(t, signals, even), step, frequency), step)
 
 
-def _refined(t: FloatArray, recorded: FloatArray, run_t: FloatArray, simulated: FloatArray, start: float) -> float:
-    """Return the time near another at which the positions of both differ least, signals weighted by their swing."""
-    near = 2.0 * max(float(np.median(np.diff(t))), float(run_t[1] - run_t[0]))
-    inside = (t - start > run_t[0] + near) & (t - start < run_t[-1] - near)
-    path = CubicSpline(run_t, simulated, axis=0)
-    swing = np.ptp(simulated, axis=0)
-    moving = swing > _STILL * swing.max()
+class _Match:
+    """Positions of a recording and of a run, whose difference depends on when the run began."""
 
-    def distance(later: float) -> float:
-        apart = recorded[inside][:, moving] - path(t[inside] - start - later)[:, moving]
-        return float(np.sum(np.var(apart, axis=0) / swing[moving] ** 2))
+    def __init__(self, t: FloatArray, recorded: FloatArray, run_t: FloatArray, simulated: FloatArray) -> None:
+        swing = np.ptp(simulated, axis=0)
+        self._moving = swing > _STILL * swing.max()
+        self._swing = swing[self._moving]
+        self._t, self._recorded = t, recorded[:, self._moving]
+        self._run_t, self._path = run_t, CubicSpline(run_t, simulated[:, self._moving], axis=0)
+        self._near = max(_WINDOW, 2.0 * max(float(np.median(np.diff(t))), float(np.median(np.diff(run_t)))))
 
-    # From the start on: the tolerance of the search grows with what it searches for.
-    found = minimize_scalar(distance, bounds=(-near, near), method="bounded", options={"xatol": 1e-7})
-    return start + float(found.x)
+    def thinned(self) -> "_Match":
+        """Return it with few enough rows to compare many times."""
+        every = max(1, len(self._t) // _MOST_ROWS)
+        return _Match(self._t[::every], self._recorded[::every], self._run_t, self._path(self._run_t))
+
+    def covered(self, start: float) -> float:
+        """Return the time that both cover, in s."""
+        return float(min(self._t[-1], self._run_t[-1] + start) - max(self._t[0], self._run_t[0] + start))
+
+    def refined(self, start: float) -> tuple[float, float, bool]:
+        """Return the time near another at which positions differ least, their mean square, and if it is no minimum.
+
+        Rows and signals are those of the first time, so that one time is compared with another over the same rows.
+        """
+        near, first, square = self._near, start, np.inf
+        while abs(start - first) <= max(_FARTHEST, 5.0 * near):
+            inside = (self._t - start > self._run_t[0] + near) & (self._t - start < self._run_t[-1] - near)
+            if np.count_nonzero(inside) < _FEWEST:
+                return start, np.inf, True
+            t, recorded = self._t[inside] - start, self._recorded[inside]
+
+            def apart(later: float, t: FloatArray = t, recorded: FloatArray = recorded) -> float:
+                return float(np.mean(np.var(recorded - self._path(t - later), axis=0) / self._swing**2))
+
+            # From the start on: the tolerance of the search grows with what it searches for.
+            found = minimize_scalar(apart, bounds=(-near, near), method="bounded", options={"xatol": 1e-7})
+            start, square = start + float(found.x), float(found.fun)
+            if abs(found.x) < _AT_BOUND * near:
+                return start, square, False
+        return start, square, True
+
+    def whole(self, start: float) -> bool:
+        """Return whether the recording covers the whole of a run that rests at an end, or is as long as it is."""
+        lasts, logged = self._run_t[-1] - self._run_t[0], self._t[-1] - self._t[0]
+        known = bool(self._resting_ends()) or abs(logged - lasts) < _AS_LONG * lasts
+        return bool(known and self.covered(start) > lasts - max(2.0 * self._near, _AS_LONG * lasts))
+
+    def rests(self, start: float) -> bool:
+        """Return whether the recording rests before and after the run, where the run starts and ends at rest."""
+        for end, lasts, side in self._resting_ends():
+            later = side * (self._t - start - end)
+            held = self._recorded[(later > 0.0) & (later < lasts)]
+            if len(held) and (np.ptp(held, axis=0) > _RESTING * self._swing).any():
+                return False
+        return True
+
+    def _resting_ends(self) -> list[tuple[float, float, float]]:
+        """Return ends of the run at rest: time, time that the run moves visibly in, and -1 or 1 for start or end."""
+        positions, fastest = self._path(self._run_t), np.abs(self._path(self._run_t, 1)).max(axis=0)
+        ends = []
+        for row, side in ((0, -1.0), (-1, 1.0)):
+            end = float(self._run_t[row])
+            if (np.abs(self._path(end, 1)) < _RESTING * fastest).all():
+                gone = (np.abs(positions - positions[row]) > _VISIBLY * self._swing).any(axis=1)
+                ends.append((end, float(np.abs(self._run_t[gone] - end).min()), side))
+        return ends
+
+
+def _chosen(match: _Match, starts: Sequence[float]) -> tuple[float, tuple[float, ...], bool]:
+    """Return when a run began, from some times to start from; other times that fit as well; if it is no minimum."""
+    quick = match.thinned()
+    tried = [quick.refined(start) for start in starts]
+    least = _ALIKE * max(_LEAST_SQUARE, min(square for _, square, _ in tried))
+    alike = [start for start, square, _ in tried if square <= least] or [starts[0]]
+    for better in (quick.rests, quick.whole):
+        alike = [start for start in alike if better(start)] or alike
+    best = max(alike, key=quick.covered)
+    start, _, open_ended = match.refined(best)
+    rivals = {round(other, 4) for other in alike if abs(other - best) > _SAME}
+    return start, tuple(sorted(rivals)), open_ended
 
 
 def _check_order(

@@ -69,6 +69,10 @@ class Recording:
         """Time from a row to the middle of the time in which its torque acts, in s."""
         return 0.5 * self.period if self.held else 0.0
 
+    def of_kind(self, kind: str) -> list[Signal]:
+        """Return the signals of a kind."""
+        return [signal for signal in self.signals if signal.kind == kind]
+
     def positions(self, joints: Sequence[str]) -> FloatArray | None:
         """Return the positions of all joints, shape (N, nq); None where one is not recorded."""
         return stacked(self.signals, [Signal("position", joint) for joint in joints])

@@ -2,6 +2,7 @@
 
 from collections.abc import Mapping
 from dataclasses import dataclass, replace
+from functools import cached_property
 
 import numpy as np
 import pinocchio as pin
@@ -20,6 +21,7 @@ from runner.robots.robot import end_points
 from runner.simulation.assembly import metric_context
 from runner.simulation.recorder import describe
 from runner.store import Run
+from runner.trajectories.joint_motion import TipOfJoints
 
 AXES = ("x", "y", "z")
 
@@ -49,12 +51,21 @@ class Setting:
             tau = tau - np.array([model.gravity_torque(row) for row in q])
         return tau
 
+    @cached_property
+    def desired_joints(self) -> FloatArray | None:
+        """Desired joint positions, shape (T, nq), in rad; None if the desired motion is one of the tip."""
+        path = self.config.path
+        return path.joints.sample(self.trace.t)[:, 0] if isinstance(path, TipOfJoints) else None
+
     def signal(self, wanted: Signal) -> FloatArray:
-        """Return a signal of the run, shape (T,)."""
+        """Return a signal of the run, shape (T,); of a reference the desired position."""
         if wanted.kind == "tip":
             values: FloatArray = self.trace.tip[:, AXES.index(wanted.of)]
             return values
         place = self.trace.joint_names.index(wanted.of)
+        if wanted.kind == "reference":
+            assert self.desired_joints is not None  # noqa: S101 - a caller compares no commands without
+            return self.desired_joints[:, place]
         return (self.trace.q if wanted.kind == "position" else self.trace.tau)[:, place]
 
 

@@ -1,6 +1,7 @@
 """Messages for the comparison of a recording with a run, on a terminal and in a report."""
 
 from collections.abc import Iterator
+from math import isnan
 
 from runner.base.quantities import quantity
 from runner.recordings.compare import RecordingComparison
@@ -39,7 +40,11 @@ def aligned_text(found: RecordingComparison) -> str:
     )
     if offset.rivals:
         others = ", ".join(quantity(rival, "s", digits=5) for rival in offset.rivals)
-        text += f"; the motion repeats itself: it fits nearly as well with time 0 at {others}"
+        text += f"; the time is undetermined: the motion repeats itself, and fits as well with time 0 at {others}"
+    if offset.open_ended:
+        text += "; the time is undetermined: the differences still decrease where the search ends"
+    if found.by_commands:
+        text += "; both are aligned by the commanded positions, so that a lag of the arm is not in this time"
     if recording.filled:
         many = len(recording.filled) > 1
         gaps = f"{len(recording.filled)} gap{'s' * many} of up to {quantity(max(recording.filled), 's')}"
@@ -50,6 +55,16 @@ def aligned_text(found: RecordingComparison) -> str:
             "later (torque: instant in the column map leaves them where they are)"
         )
     return "; ".join([text, *recording.notes])
+
+
+def lag_lines(found: RecordingComparison) -> Iterator[str]:
+    """Yield how much later the joints move than their commands, in the recording and in the run."""
+    if found.lags:
+        each = ", ".join(
+            f"{joint} {quantity(log, 's')}" + ("" if isnan(run) else f" (run {quantity(run, 's')})")
+            for joint, (log, run) in found.lags.items()
+        )
+        yield f"Joints move later than their commands: {each}."
 
 
 def friction_lines(found: RecordingComparison) -> Iterator[str]:
@@ -64,5 +79,19 @@ def friction_lines(found: RecordingComparison) -> Iterator[str]:
             yield BEHIND_GEARS
         yield AMONG_MASSES
         yield ONE_LOG
+    below = [
+        f"{joint.joint} {kind}"
+        for joint in found.friction.joints
+        for kind, value, half in (
+            ("viscous", joint.viscous, joint.viscous_half),
+            ("Coulomb", joint.coulomb, joint.coulomb_half),
+        )
+        if value + half < 0.0
+    ]
+    if below:
+        yield (
+            f"Below zero, with the whole interval: {', '.join(below)}. No friction is: the torques are late, of "
+            "another kind than the column map says, or hold what the equations lack."
+        )
     for reason in found.friction.lacking:
         yield f"Friction cannot be identified of {reason}."

@@ -9,6 +9,7 @@ from runner.base.quantities import above_rounding, label_with_unit, quantity
 from runner.plugins.metric_units import unit_of
 from runner.recordings import digest_of, words
 from runner.recordings.compare import RecordingComparison, Residual
+from runner.recordings.verdict import verdict_lines
 from runner.reporting.charts.figure import spaced_indices
 from runner.reporting.document import Block, Curves, Document, Notice, Panel, Provenance, Section, Series, Table, Text
 from runner.reporting.figures import origin
@@ -30,9 +31,16 @@ def recording_document(found: RecordingComparison) -> Document:
         subtitle=literal(f"{found.recording.path.name} against run {found.run.hash}"),
         abstract=literal(_abstract(found)),
         sections=[
+            Section("Residuals", [_residual_curves(found), residuals(found), Text(f"The {words.FIT}.")]),
             Section("Both signals", [_both_curves(found)]),
-            Section("Residuals", [residuals(found), _residual_curves(found), Text(f"The {words.FIT}.")]),
-            Section("Time offset", [Text(literal(f"{capital(words.aligned_text(found))}.")), _lag_curves(found)]),
+            Section(
+                "Time offset",
+                [
+                    Text(literal(f"{capital(words.aligned_text(found))}.")),
+                    *(Text(literal(line)) for line in words.lag_lines(found)),
+                    _lag_curves(found),
+                ],
+            ),
             Section("Friction", _friction(found)),
             Section("Metrics of both", _metrics(found)),
             Section("Provenance", _made(found)),
@@ -54,9 +62,7 @@ def report_folder(found: RecordingComparison) -> Path:
 
 def _abstract(found: RecordingComparison) -> str:
     text = f"The recording is compared with repetition 0 of the run, at the run's ticks; {words.aligned_text(found)}."
-    if found.friction is None:
-        return f"{text} {next(words.friction_lines(found))}"
-    return text
+    return "\n".join([" ".join(verdict_lines(found)), text])
 
 
 def _key_numbers(found: RecordingComparison) -> list[tuple[str, str, str]]:
@@ -128,9 +134,10 @@ def _metrics(found: RecordingComparison) -> list[Block]:
     text = (
         f"Both are computed by the same code, from {quantity(first, 's')} to {quantity(last, 's')}. Speeds of the "
         "recording are differences of its positions behind the low-pass. Its tip, where it is not recorded, "
-        "follows from the joints by the run's model. A constant delay of the arm is part of the time offset and not "
-        "of the tracking errors."
+        "follows from the joints by the run's model. "
     )
+    if not found.by_commands:
+        text += "A constant delay of the arm is part of the time offset and not of the tracking errors."
     header = ["metric", Column("name on the command line", "code"), *numbers("run", "recording")]
     return [Text(text), Table("Metrics of both.", header, rows)]
 

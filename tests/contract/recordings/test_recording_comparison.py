@@ -1,13 +1,20 @@
 """Recordings compared with a run: of the run itself, and of a part of its signals."""
 
+import re
+from dataclasses import replace
+
 import numpy as np
+import pinocchio as pin
 import pytest
 
 from runner.base.errors import RunnerError
 from runner.recordings.columns_map import Signal
 from runner.recordings.compare import compare_recording
+from runner.recordings.friction import Friction, JointFriction
 from runner.recordings.setting import setting_of
-from runner.recordings.words import aligned_text
+from runner.recordings.smoothing import derivative
+from runner.recordings.verdict import explained, verdict_lines
+from runner.recordings.words import aligned_text, friction_lines, lag_lines
 from runner.sweeps.job import run
 
 JOINTS = "a1: {joint: q1, unit: rad}, a2: {joint: q2, unit: rad}, a3: {joint: q3, unit: rad}"
@@ -114,6 +121,84 @@ def test_commanded_positions_are_read_and_not_compared(compared):
     found = compared(commanded)
     assert [one.signal.words for one in found.residuals] == ["position of q1", "position of q2"]
     assert Signal("reference", "q3") in found.recording.signals
+
+
+def test_a_lag_behind_the_commands_is_no_time_offset(stored, compared):
+    """All joints of the log move 30 ms later than in the run; without its commands this would be its offset."""
+    desired = setting_of(stored).desired_joints
+
+    def late(frame):
+        t = frame["t"].to_numpy()
+        for j in (1, 2, 3):
+            frame[f"d{j}"] = desired[:, j - 1]
+            frame[f"a{j}"] = np.interp(t - 0.03, t, frame[f"a{j}"])
+        return frame
+
+    commands = ", ".join(f"d{j}: {{reference: q{j}, unit: rad}}" for j in (1, 2, 3))
+    alone = compared(JOINTS, change=late)
+    assert (alone.offset.start, alone.lags, alone.by_commands) == (pytest.approx(0.03, abs=5e-4), {}, False)
+    found = compared(f"{JOINTS}, {commands}", change=late)
+    assert found.offset.start == pytest.approx(0.0, abs=1e-6)
+    for log, run_ in found.lags.values():
+        assert log - run_ == pytest.approx(0.03, abs=1e-3)
+        assert run_ == pytest.approx(0.0, abs=2e-3)
+    assert "by the commanded positions" in aligned_text(found)
+    assert next(lag_lines(found)).startswith("Joints move later than their commands: q1 30")
+
+
+def test_friction_below_zero_is_named(stored, compared):
+    found = compared(JOINTS)
+    joints = [
+        JointFriction("q1", "rad", -6.4, 1.6, 0.1, 0.2, 0.0, np.zeros(1), np.zeros(1)),
+        JointFriction("q2", "rad", 3.3, 1.9, -0.1, 0.2, 0.0, np.zeros(1), np.zeros(1)),
+    ]
+    (line,) = (line for line in friction_lines(replace(found, friction=Friction(joints, [], 10.0))) if "Below" in line)
+    assert line.startswith("Below zero, with the whole interval: q1 viscous. No friction is")
+
+
+@pytest.mark.parametrize("cause", ["friction", "rotor inertia", "a payload", "a constant"])
+def test_the_cause_of_the_torques_differences_is_named(stored, compared, cause):
+    """The recorded torques are the run's with one cause; it alone explains nearly all of the differences."""
+    model = setting_of(stored).config.arm.model
+
+    def caused(frame):
+        q, dq = (np.column_stack([frame[f"{name}{j}"] for j in (1, 2, 3)]) for name in ("a", "dq"))
+        ddq = derivative(dq, 0.002)
+
+        def dynamics(arm):
+            data = arm.pin_model.createData()
+            return np.array([pin.rnea(arm.pin_model, data, *row) for row in zip(q, dq, ddq, strict=True)])
+
+        more = {
+            "friction": lambda: 0.8 * dq + 0.5 * np.sign(dq),
+            "rotor inertia": lambda: ddq * [0.4, 0.2, 0.3],
+            "a constant": lambda: np.full(q.shape, 1.0),
+            "a payload": lambda: dynamics(model.with_payload(1.5)) - dynamics(model),
+        }[cause]()
+        return frame.assign(**{f"c{j}": frame[f"c{j}"] + more[:, j - 1] for j in (1, 2, 3)})
+
+    found = compared(f"{JOINTS}, {TORQUES}", change=caused)
+    shares = explained(found)
+    assert max(shares, key=shares.get) == cause
+    assert shares[cause] > 0.95
+    text = " ".join(verdict_lines(found))
+    assert re.match(
+        r"Over 1.5 s the model predicts positions within .* rad for 95 % of the time \(q\d\) and torques to", text
+    )
+    assert re.search(rf"{cause} (9\d|100) %", text)
+    assert "a lag of the arm, as it holds no commands" in text
+
+
+def test_the_accuracy_is_that_of_the_differences(stored, compared):
+    def off(frame):
+        return frame.assign(a2=frame["a2"] + 0.004, c1=1.1 * frame["c1"], c2=frame["c2"], c3=frame["c3"])
+
+    text = next(verdict_lines(compared(f"{JOINTS}, {TORQUES}", change=off)))
+    assert "within 4.00·10⁻³ rad for 95 % of the time (q2)" in text
+    assert "(q1: 9.1 %)" in text
+    of_tip = list(verdict_lines(compared(TIP)))
+    assert "the tip's coordinates within" in of_tip[0]
+    assert "masses, as it holds no torques" in of_tip[-1]
 
 
 def test_a_part_of_a_run(compared):

@@ -95,6 +95,20 @@ def test_other_masses_are_not_mistaken_for_friction(model):
     assert [joint.coulomb for joint in found.joints] == pytest.approx(COULOMB, rel=0.05)
 
 
+@pytest.mark.parametrize("rotors", [[0.3, 0.3, 0.3], [2.0, 0.1, 1.0]])
+def test_rotors_that_the_model_lacks_are_not_mistaken_for_friction(model, rotors):
+    """Coulomb friction is exact by the columns of the rotors, and off without them, as behind the gears."""
+    motion = moved()
+    tau = torques(model.with_armature(np.array(rotors)), motion) + friction_of(motion[1])
+
+    def off(**options):
+        joints = identify_friction(model, motion[0], tau, H, **options).joints
+        return max(abs(joint.coulomb - c) for joint, c in zip(joints, COULOMB, strict=True))
+
+    assert off() < 0.01
+    assert off(rotors=False) > 2.0 * off()
+
+
 def test_an_arm_without_friction_has_none(model):
     motion = moved()
     noise = np.random.default_rng(1).normal(0.0, 0.3, motion[0].shape)
@@ -156,7 +170,7 @@ def test_coulomb_friction_that_another_mass_explains_is_not_given(model, turns):
     tau[:, [0, 2]] = np.nan
     found = identify_friction(model, q, tau, period)
     assert [joint.joint for joint in found.joints] == ([] if turns else ["q2"])
-    assert ("q2: its motion does not tell friction from other masses" in found.lacking) == turns
+    assert ("q2: its motion does not tell friction from other masses and inertias" in found.lacking) == turns
 
 
 @pytest.mark.parametrize("every", [1, 8])

@@ -4,7 +4,8 @@ import numpy as np
 import pytest
 
 from runner.base.errors import RunnerError
-from runner.recordings.offset import find_offset
+from runner.recordings.offset import find_lag, find_offset
+from tools.log_offsets import is_refused, judge, make_log
 
 RUN_T = np.arange(0.0, 4.0005, 1e-3)
 NAMES = ("columns.a", "columns.b")
@@ -78,6 +79,35 @@ def test_a_signal_moves_against_the_run_if_its_speeds_correlate_by_less_than_min
             find_offset(*given)
     else:
         assert find_offset(*given).start == pytest.approx(1.0, abs=0.02)
+
+
+@pytest.mark.parametrize(
+    ("lasts", "speeds"), [(6.0, (1.0, 1.3)), (12.0, (0.5, 0.65)), (10.0, (0.3, 0.39))], ids=["6 s", "12 s", "10 s"]
+)
+def test_a_motion_that_is_cut_off_begins_where_it_does(lasts, speeds):
+    """The correlation of the speeds has its maximum 9 ms from it, as the end weighs against it."""
+
+    def swings(t):
+        return np.column_stack([0.3 * (1.0 - np.cos(speeds[0] * t)), 0.2 * (1.0 - np.cos(speeds[1] * t))])
+
+    t, run_t = np.arange(0.0, lasts, 2e-3), np.arange(0.0, lasts, 1e-3)
+    found = find_offset(t, swings(t), run_t, swings(run_t), NAMES)
+    assert found.start == pytest.approx(0.0, abs=1e-6)
+    assert (found.rivals, found.open_ended) == ((), False)
+
+
+@pytest.mark.parametrize("seed", range(6))
+def test_offsets_of_made_up_logs_are_right_or_undetermined(seed):
+    """A share of `python -m tools log_offsets`."""
+    log = make_log(seed)
+    assert judge(log) in (["right"] if log.at_rest else ["right", "undetermined"])
+    assert is_refused(make_log(seed, periodic=True), seed)
+
+
+@pytest.mark.parametrize(("commanded", "lag"), [(np.sin, 0.02), (np.cos, -0.01), (lambda t: t**2, 0.25)])
+def test_a_lag_is_that_of_the_same_motion_later(commanded, lag):
+    t = np.arange(0.0, 5.0, 0.004)
+    assert find_lag(t, commanded(t - lag) + 0.1, commanded(t)) == pytest.approx(lag, abs=1e-5)
 
 
 def test_a_motion_that_repeats_itself_has_rivals():

@@ -1,0 +1,140 @@
+"""Verdict on a model by a recording: how well it predicts, what explains the rest, and what the log does not tell."""
+
+from collections.abc import Iterator, Mapping, Sequence
+
+import numpy as np
+import pinocchio as pin
+
+from runner.base.arrays import FloatArray
+from runner.base.quantities import quantity
+from runner.recordings.columns_map import Signal
+from runner.recordings.compare import RecordingComparison, Residual
+from runner.recordings.smoothing import cutoff, derivative, low_pass
+from runner.robots.model import RobotModel
+
+_MOST_ROWS = 2_000
+_EDGE = 0.05  # of the rows at each end, where the low-pass knows only one side
+_EXPLAINS = 0.1  # of the squares of the torques' differences, from which on a cause is named
+_ORDER = ("friction", "rotor inertia", "a payload", "a constant")
+
+
+def verdict_lines(found: RecordingComparison) -> Iterator[str]:
+    """Yield sentences: the accuracy of positions and torques, what explains the torques' differences, what is not told.
+
+    Args:
+        found: The recording and the run.
+    """
+    first, last = found.span
+    said = [text for text in (_positions(found.residuals), _torques(found.residuals)) if text]
+    yield f"Over {quantity(last - first, 's')} the model predicts {' and '.join(said)}."
+    shares = explained(found)
+    causes = [f"{cause} {_per_cent(share)}" for cause, share in shares.items() if share >= _EXPLAINS]
+    if causes:
+        yield f"Alone, each explains of the torques' differences (squares): {', '.join(causes)}."
+    elif shares:
+        yield f"None of {', '.join(shares)} explains a tenth of the torques' differences (squares)."
+    untold = list(_untold(found))
+    if untold:
+        yield f"The log does not tell: {'; '.join(untold)}."
+
+
+def _positions(residuals: Sequence[Residual]) -> str:
+    moving = [one for one in residuals if one.signal.kind == "position"] or [
+        one for one in residuals if one.signal.kind == "tip"
+    ]
+    if not moving:
+        return ""
+    reached = {one.signal.of: float(np.quantile(np.abs(one.values), 0.95)) for one in moving}
+    worst = max(moving, key=lambda one: reached[one.signal.of])
+    of = "positions" if worst.signal.kind == "position" else "the tip's coordinates"
+    return f"{of} within {quantity(reached[worst.signal.of], worst.unit)} for 95 % of the time ({worst.signal.of})"
+
+
+def _torques(residuals: Sequence[Residual]) -> str:
+    """Return the rms of the differences over that of the torques, of all joints and of the worst."""
+    pairs = {
+        one.signal.of: (one.rms**2, float(np.mean(one.recorded**2)))
+        for one in residuals
+        if one.signal.kind == "torque" and np.any(one.recorded)
+    }
+    if not pairs:
+        return ""
+    whole = np.sqrt(sum(off for off, _ in pairs.values()) / sum(size for _, size in pairs.values()))
+    worst, (off, size) = max(pairs.items(), key=lambda pair: pair[1][0] / pair[1][1])
+    of_worst = f" ({worst}: {_per_cent(np.sqrt(off / size))})" if len(pairs) > 1 else ""
+    return f"torques to {_per_cent(whole)} of their rms{of_worst}"
+
+
+def _per_cent(share: float) -> str:
+    return f"{100.0 * share:.{0 if share > 0.0995 else 1}f} %"
+
+
+def explained(found: RecordingComparison) -> Mapping[str, float]:
+    """Return the share of the torques' differences that each cause alone explains, in squares; empty without torques.
+
+    Differences are those of the recorded torques from the model's at the recorded motion, behind a low-pass, each joint
+    divided by the rms of its torque. The causes are viscous and Coulomb friction, another inertia of the rotor and a
+    constant, of each joint, and a mass at the tip.
+    """
+    by_signal, model = {one.signal: one for one in found.residuals}, found.model
+    joints = model.joint_names
+    wanted = [Signal(kind, joint) for kind in ("position", "torque") for joint in joints]
+    if not all(signal in by_signal for signal in wanted) or found.recording.holds != "torque":
+        return {}
+    t = by_signal[wanted[0]].t
+    period = float(np.median(np.diff(t)))
+    q, tau = (
+        low_pass(np.column_stack([by_signal[signal].recorded for signal in part]), period, cutoff(period))
+        for part in (wanted[: len(joints)], wanted[len(joints) :])
+    )
+    dq = derivative(q, period)
+    ddq, signs = derivative(dq, period), low_pass(np.sign(dq), period, cutoff(period))
+    edge = int(_EDGE * len(t))
+    rows = np.arange(edge, len(t) - edge, max(1, len(t) // _MOST_ROWS))
+    rigid = model if found.recording.side == "motor" else model.with_armature(np.zeros(model.nq))
+
+    def torques(arm: RobotModel) -> FloatArray:
+        pin_model, data = arm.pin_model, arm.pin_model.createData()
+        return np.array([pin.rnea(pin_model, data, q[row], dq[row], ddq[row]) for row in rows])
+
+    away = tau[rows] - torques(rigid)
+    payload = torques(model.with_payload(1.0)) - torques(model)
+    scale = np.sqrt(np.mean(tau[rows] ** 2, axis=0)) + 1e-9
+    each = np.eye(len(joints))
+    columns = {
+        "friction": [dq[rows][:, :, None] * each, signs[rows][:, :, None] * each],
+        "rotor inertia": [ddq[rows][:, :, None] * each] if found.recording.side == "motor" else [],
+        "a payload": [payload[:, :, None]],
+        "a constant": [np.broadcast_to(each, (len(rows), *each.shape))],
+    }
+    y = (away / scale).ravel()
+    return {
+        cause: _share(
+            y, np.concatenate([(part / scale[:, None]).reshape(len(y), -1) for part in columns[cause]], axis=1)
+        )
+        for cause in _ORDER
+        if columns[cause]
+    }
+
+
+def _share(y: FloatArray, X: FloatArray) -> float:
+    whole = float(y @ y)
+    if whole == 0.0:
+        return 0.0
+    rest = y - X @ np.linalg.lstsq(X, y, rcond=None)[0]
+    return 1.0 - float(rest @ rest) / whole
+
+
+def _untold(found: RecordingComparison) -> Iterator[str]:
+    if found.offset.rivals or found.offset.open_ended:
+        yield "when the run begins, so that differences of positions may be those of the time"
+    if found.friction is None:
+        yield f"friction ({found.no_friction})"
+    else:
+        lacking = [reason.partition(":")[0] for reason in found.friction.lacking]
+        if lacking:
+            yield f"friction of {', '.join(lacking)}"
+    if not found.lags:
+        yield "a lag of the arm, as it holds no commands"
+    if not found.recording.of_kind("torque"):
+        yield "masses, as it holds no torques"
