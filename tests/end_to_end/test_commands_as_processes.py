@@ -27,7 +27,10 @@ def test_two_processes_may_make_the_same_run_at_once(cli, tmp_path, gate):
         gate.open()
         out, err = process.communicate(timeout=PATIENCE)
     assert (process.returncode, ending.code) == (0, 0)
-    assert (out, err) == (ending.out, ending.err)
+    told = [
+        [line for line in text.splitlines() if "PyBullet is not installed" not in line] for text in (err, ending.err)
+    ]
+    assert (out, told[0]) == (ending.out, told[1])
     assert json.loads((ending.folder / "metrics.json").read_text())["status"] == "ok"
     assert [entry.name for entry in ending.folder.parent.rglob("*") if entry.name.startswith(".")] == []
 

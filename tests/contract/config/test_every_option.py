@@ -62,7 +62,17 @@ def lines():
             yield (*NEEDS.get(option, ()), option)
 
 
-@pytest.mark.parametrize("line", list(lines()), ids=" ".join)
+# Walls, and wrist sensors with a tool, on the default plant.
+NEED_BULLET = ("experiment=meca500/circle", "experiment=meca500/tool_in_motion", "experiment=meca500/weighing")
+
+
+@pytest.mark.parametrize(
+    "line",
+    [
+        pytest.param(line, id=" ".join(line), marks=[pytest.mark.bullet] if set(NEED_BULLET) & set(line) else [])
+        for line in lines()
+    ],
+)
 def test_it_composes_and_runs(tmp_path, line):
     made = run(*line, "duration=0.05", "repetitions=1", f"outputs={tmp_path}")
     warnings = [each for each in made.provenance["warnings"] if ": no effect, because " not in each]

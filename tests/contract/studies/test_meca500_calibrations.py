@@ -16,6 +16,7 @@ from runner.studies.meca500.tool_centre_point import common_point_covariance, in
 from runner.study.measured import Finding
 from runner.study.prose.signals import exponent, setting
 
+pytestmark = pytest.mark.bullet  # its study has walls and tools on the default plant
 GRAVITY = 9.81
 PARAMETERS = np.array([0.25, 0.3, 0.01, -0.003, 0.028, 0.4, -0.3, 0.8, 0.01, -0.02, 0.005])
 ORIENTATIONS = Rotation.random(12, rng=np.random.default_rng(3)).as_matrix()

@@ -10,6 +10,8 @@ from runner.reporting.document import Curves, Notice, Playback, Table, Text
 from runner.reporting.formulas import faulty
 from runner.reporting.render import write_report
 
+pytestmark = pytest.mark.bullet  # its study has walls and tools on the default plant
+
 
 @pytest.fixture(scope="session")
 def document(made):

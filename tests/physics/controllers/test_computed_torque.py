@@ -199,6 +199,7 @@ def test_the_line_lasts_up_to_a_payload_of_2_9_kg(simulated, kind):
     assert np.linalg.norm(heavy.error, axis=1).max() > 1e-2
 
 
+@pytest.mark.bullet  # which goes on beyond joint limits
 def test_without_a_posture_task_the_arm_drifts_into_a_joint_stop(simulated):
     free, held = (
         simulated(

@@ -120,6 +120,7 @@ YIELDING = POSITIONS.replace(
 )
 
 
+@pytest.mark.bullet  # for servos against a wall
 def test_a_config_with_a_law_has_walls_refused_that_it_would_bounce_on(own_part, cli):
     own = law(own_part, "yielding", YIELDING, "check_stability: true\n")
     given = (

@@ -19,6 +19,7 @@ from runner.simulation.assembly import assemble
 from runner.simulation.loop import simulate
 from runner.simulation.sensors import make_encoders, make_wrist_sensor
 
+pytestmark = pytest.mark.bullet  # servos against a wall
 PRESSED = (
     "experiment=meca500/wall", "environment.distance=0", "environment.damping=0", "trajectory.goal=[0.185,0.01,0.06]",
     "controller.period=0.01", "plant=default", "plant.servo.period=0.001", "plant.step=0.001",

@@ -6,7 +6,11 @@ from support import strangers
 
 CONTROLLERS = ("operational_space", "computed_torque", "differential_inverse_kinematics", "whole_body")
 PAIRS = [
-    pytest.param(controller, name, marks=[pytest.mark.slow] if (row + column) % 4 else [])
+    pytest.param(
+        controller,
+        name,
+        marks=[pytest.mark.slow] * ((row + column) % 4 > 0) + [pytest.mark.bullet] * (name == "snake"),
+    )
     for row, controller in enumerate(CONTROLLERS)
     for column, name in enumerate(strangers.STRANGERS)
 ]  # `make test` has one law for each arm, and three arms for each law

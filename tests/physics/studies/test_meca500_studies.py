@@ -40,6 +40,7 @@ def test_a_step_response_is_the_analytic_one_and_a_late_load_makes_it_late(plann
     assert slow < 0.01 < late < 20.0 / np.e * REPORTED
 
 
+@pytest.mark.bullet
 @pytest.mark.parametrize(("axis", "load"), [("x", 2.0), ("rotation z", 0.05)])
 def test_servos_give_way_as_their_springs_do_at_rest(planned, axis, load):
     found = planned(f"step/servo, 1 ms/{axis}", "duration=1")
@@ -64,6 +65,7 @@ def test_a_force_through_the_tip_turns_neither_law_nor_tool(planned):
     assert turned(planned("tip/at the flange")) > 0.01
 
 
+@pytest.mark.bullet
 def test_the_force_on_a_wall_is_read_true(planned):
     found = planned("wall/servos/100000")
     wall, start = found.config["environment"], found.config["trajectory"]["start"][0]
@@ -80,6 +82,7 @@ def test_contact_bounces_beyond_the_predicted_bound_alone(planned, share, unstab
     assert bounces(found) is unstable
 
 
+@pytest.mark.bullet
 def test_the_same_orientation_is_weighed_by_reaction_and_balance(planned):
     found = planned("rest/7")
     apart = wrenches(found, "load")[1:] - wrenches(found, "reaction")[1:]

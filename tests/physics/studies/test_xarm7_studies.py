@@ -134,6 +134,7 @@ def test_the_printed_line_takes_3_kg_and_not_the_rated_payload(planned: Make) ->
     assert float(lost_when(lost)) > saturated[1]
 
 
+@pytest.mark.bullet  # which goes on beyond joint limits
 @pytest.mark.parametrize("law", ["operational_space", "computed_torque"])
 def test_the_torque_laws_hold_the_line_without_load_and_lose_it_above_what_the_shoulder_holds(
     planned: Make, law: str
