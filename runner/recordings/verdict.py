@@ -28,9 +28,9 @@ def verdict_lines(found: RecordingComparison) -> Iterator[str]:
     said = [text for text in (_positions(found.residuals), _torques(found.residuals)) if text]
     yield f"Over {quantity(last - first, 's')} the model predicts {' and '.join(said)}."
     shares = explained(found)
-    causes = [f"{cause} {_per_cent(share)}" for cause, share in shares.items() if share >= _EXPLAINS]
+    causes = [f"{cause} alone {_per_cent(share)}" for cause, share in shares.items() if share >= _EXPLAINS]
     if causes:
-        yield f"Alone, each explains of the torques' differences (squares): {', '.join(causes)}."
+        yield f"Of the squares of the torques' differences, {', '.join(causes).replace('alone', 'alone explains', 1)}."
     elif shares:
         yield f"None of {', '.join(shares)} explains a tenth of the torques' differences (squares)."
     untold = list(_untold(found))
