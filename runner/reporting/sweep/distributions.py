@@ -39,7 +39,7 @@ def section(subject: Subject) -> Section:
 
 
 def over_seeds(subject: Subject) -> Section:
-    """Return the distribution of each compared metric over all draws of a sweep over the seed alone."""
+    """Return the distribution of each compared metric over all draws of a sweep over only the seed."""
     panels, rows = [], []
     for metric in subject.metrics:
         values = _drawn(subject, metric)
@@ -74,7 +74,7 @@ def over_seeds(subject: Subject) -> Section:
 
 
 def told_over_seeds(subject: Subject) -> str:
-    """Return the median of the first metric over all draws of a sweep over the seed alone, with their range."""
+    """Return the median of the first metric over all draws of a sweep over only the seed, with their range."""
     metric = subject.metrics[0]
     values = _drawn(subject, metric)
     unit = subject.measurements.units[metric]

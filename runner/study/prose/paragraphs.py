@@ -157,7 +157,7 @@ def _is_block(value: Any) -> bool:
 
 
 def values_shown(text: str, values: Values) -> dict[int, str]:
-    """Return how a text shows its measured values, by placeholder: those of a sentence in one unit where that reads.
+    """Return the measured values of a text as strings, by placeholder: those of a sentence in one unit if that reads.
 
     Args:
         text: Sentences with placeholders.

@@ -15,7 +15,7 @@ STEP = re.compile(r"\b(?:fitted|simulated) as the|as the thesis ran|the thesis r
 
 
 def problem(kind, title):
-    """Return what is wrong with the title of an answer; an empty string if nothing is."""
+    """Return the problem of the title of an answer; an empty string if it has none."""
     quoted = QUOTED.search(title)
     if kind == "why" or title.startswith("Beyond the source: "):
         return ""
