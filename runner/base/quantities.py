@@ -127,6 +127,17 @@ def format_range(low: float | None, high: float | None, unit: str, word: str = "
     return f"{_scaled(low, factor)} {word} {_scaled(high, factor)} {name}".strip()
 
 
+def in_one_unit(values: Sequence[float], unit: str) -> list[str]:
+    """Return values with their units: in one unit if none then needs a power of ten, such as "109 mm", "0.0431 mm"."""
+    factor, name = _shared(values, unit, None)
+    texts = [number(factor * value) for value in values]
+    return (
+        [f"{text} {name}" for text in texts]
+        if not any("·" in text for text in texts)
+        else [quantity(value, unit) for value in values]
+    )
+
+
 def with_interval(value: float, half: float) -> tuple[str, str]:
     """Return an estimate and the half width of its interval, both to two digits of the latter: 300.0 and ± 1.1."""
     decimals = max(0, 1 - math.floor(math.log10(half))) if half > 0.0 else 3

@@ -1,4 +1,4 @@
-"""Check in seconds if your controller fits the benchmark.
+"""Check if your controller fits the benchmark.
 
 LAW.py is the file for `--plugin controller=LAW.py`; its config controller/LAW.yaml and its ranges LAW.ranges.yaml are
 next to it. LAW.py:NAME is a law that is one function, without config. The check composes every run and compares it with

@@ -26,7 +26,7 @@ MAGIC = {b"#ROSBAG V": "ROS 1 bag", b"\x89MCAP0": "MCAP", b"SQLite format 3": "S
 """First bytes of the files of bags, and their names."""
 
 _ZSTD = b"\x28\xb5\x2f\xfd"
-_EXTRA = "`pip install 'arm-control-runner[ros]'` installs what reads it"
+_EXTRA = "`.venv/bin/uv pip install -e '.[ros]'` in the checkout, or `pip install 'WHEEL[ros]'`, installs what reads it"
 
 
 class _Raw(NamedTuple):

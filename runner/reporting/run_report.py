@@ -93,8 +93,12 @@ def _remedies(run: Run) -> list[str]:
     found = [float(one["value"]) for one in run.caveats if one["rule"] == UNSTABLE]
     controller = run.config["controller"]
     given = [(key, controller.get(key)) for key in ("natural_frequency", "period")]
-    bounds = [f"controller.{key} below {number(value / ratio, 3)}" for ratio in found for key, value in given
-              if isinstance(value, int | float)]  # fmt: skip
+    bounds = [
+        f"controller.{key} below {number(value / ratio, plain=1e-4)}"
+        for ratio in found
+        for key, value in given
+        if isinstance(value, int | float)
+    ]
     if not bounds:
         return []
     return [f"Its velocity loop is unstable: the gain is {number(found[0], 2)} times too large for the period. Stable, "

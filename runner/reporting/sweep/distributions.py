@@ -6,7 +6,7 @@ import numpy as np
 
 from runner.base.arrays import FloatArray
 from runner.base.errors import StoreError
-from runner.base.quantities import with_ends
+from runner.base.quantities import format_range, quantity, with_ends
 from runner.reporting.charts.figure import POINTS, spaced_indices
 from runner.reporting.document import Block, Curves, Notice, Panel, Section, Series, Table, Text
 from runner.reporting.figures import overlaid, playback, torque_and_error
@@ -36,6 +36,57 @@ def section(subject: Subject) -> Section:
     if not any(is_condition(axis.name) for axis in subject.axes):
         blocks.append(_in_order(subject, metric))
     return Section("Distributions", blocks)
+
+
+def over_seeds(subject: Subject) -> Section:
+    """Return the distribution of each compared metric over all draws of a sweep over only the seed."""
+    panels, rows = [], []
+    for metric in subject.metrics:
+        values = _drawn(subject, metric)
+        x, y = _distribution(values)
+        panels.append(
+            Panel(
+                "",
+                subject.label(metric),
+                "share of draws",
+                [Series("", x, y)],
+                x_log=spans_decades(values),
+                y_range=(0, 1.02),
+            )
+        )
+        low, high = np.quantile(values, (0.05, 0.95), method="inverted_cdf") if values.size else (np.nan, np.nan)
+        unit = subject.measurements.units[metric]
+        rows.append([title(metric), _with_interval(values, unit), format_range(float(low), float(high), unit)])
+    caption = (
+        "Medians over the draws, in brackets their 95 % intervals by the bootstrap; and the range from the 5 % to the "
+        "95 % quantile."
+    )
+    drawn = (
+        "Share of all draws of all seeds in which a metric is at most the value below; a draw that failed is left out."
+    )
+    return Section(
+        "Distribution over the seeds",
+        (
+            Curves(drawn, panels, columns=min(2, len(panels))),
+            Table(f"{caption} {QUANTILE_RULE}", ["metric", *numbers("median", "5 % to 95 %")], rows),
+        ),
+    )
+
+
+def told_over_seeds(subject: Subject) -> str:
+    """Return the median of the first metric over all draws of a sweep over only the seed, with their range."""
+    metric = subject.metrics[0]
+    values = _drawn(subject, metric)
+    unit = subject.measurements.units[metric]
+    ends = format_range(float(values.min()), float(values.max()), unit)
+    middle = quantity(float(np.median(values)), unit)
+    return f"Over {values.size} draws the median of the {title(metric)} is {middle}, and all are from {ends}."
+
+
+def _drawn(subject: Subject, metric: str) -> FloatArray:
+    """Return a metric of all draws of all cells, shape (N,), without those that failed."""
+    values = subject.measurements.values[metric].ravel()
+    return values[~np.isnan(values)]
 
 
 def _shares(subject: Subject, metric: str, axis: Axis) -> Panel:

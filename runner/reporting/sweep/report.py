@@ -71,6 +71,7 @@ def sweep_document(sweep: Sweep, metrics: Sequence[str] = (), runs_address: str 
     measurements = subject.measurements
     answers = find_answers(subject)
     several = bool(subject.metrics and subject.axes)
+    seeds_alone = several and _has_seeds_alone(subject)
     sections = [failures_section(subject)] if measurements.failed else []
     texts = sentences(answers)
     if answers:
@@ -78,7 +79,7 @@ def sweep_document(sweep: Sweep, metrics: Sequence[str] = (), runs_address: str 
     if sweep.spec:
         sections.append(spec.section(subject, sweep))
     if several and not answers:
-        sections.append(effects.section(subject))
+        sections.append(distributions.over_seeds(subject) if seeds_alone else effects.section(subject))
     shown = len(sections) or None
     sections += caveats_sections(subject)
     sections.append(axes_section(subject, sweep.command))
@@ -93,7 +94,7 @@ def sweep_document(sweep: Sweep, metrics: Sequence[str] = (), runs_address: str 
     if traded is not None:
         sections.append(tradeoff.section(subject, traded))
     if ranked:
-        sections.append(distributions.section(subject))
+        sections += [] if seeds_alone else [distributions.section(subject)]
         sections.append(_motions(subject, sweep, answers))
     sections.append(_all_runs(subject, sweep, runs_address))
     sections.append(made_by(measurements, ("sweep", sweep.folder.name)))
@@ -141,6 +142,11 @@ def _key_numbers(subject: Subject) -> list[tuple[str, str, str]]:
     return [*numbers, ("at its torque limit", *joint)] if joint[0] else numbers
 
 
+def _has_seeds_alone(subject: Subject) -> bool:
+    """Tell if a sweep varies nothing but the seed, whose values mean nothing."""
+    return [axis.name for axis in subject.axes] == [SEED]
+
+
 def _title(subject: Subject) -> str:
     axis = asked_axis(subject)
     if axis is None:
@@ -166,12 +172,13 @@ def _abstract(subject: Subject, sweep: Sweep, answers: Sequence[Answer], first: 
     texts += filter(None, [nothing_differs(subject)])
     if sweep.spec:
         texts.append(spec.summary(subject, sweep))
-    few = too_few(subject) if subject.ranked and subject.axes else ""
-    texts += [few] if few else [*first, *causes(subject, answers)]
-    if answers:
-        texts += filter(None, [made_equal(subject)])
-    if subject.ranked and subject.axes:
-        texts += effects.describe_shared_variation(subject)
+    if subject.ranked and _has_seeds_alone(subject):
+        texts.append(distributions.told_over_seeds(subject))
+    else:
+        few = too_few(subject) if subject.ranked and subject.axes else ""
+        texts += [few] if few else [*first, *causes(subject, answers)]
+        texts += filter(None, [made_equal(subject)] if answers else [])
+        texts += effects.describe_shared_variation(subject) if subject.ranked and subject.axes else []
     rules = [f"{rule} ({count} of {cells} cells)" for rule, count, *_ in measurements.caveats_by_rule()]
     texts += [f"May mislead: {', '.join(rules)}; see Caveats."] if rules else []
     if noise_alone([measurements]):

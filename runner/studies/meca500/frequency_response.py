@@ -57,7 +57,7 @@ def sine(run: Run) -> dict[str, Any]:
 
     In per cent: how far an axis is off_sampled, the sampled law with the give of servos where there are some, and
     off_continuous, and what a delay of half a period makes; samples that a period of the sine holds; and how many times
-    the law's own answer the give is at least.
+    the law's own answer the give is at least, and at most (widest).
     """
     omega = 2.0 * np.pi * float(run.config["environment"]["frequency"])
     law, period, found = law_in(run.config), float(run.config["controller"]["period"]), fitted_response(run)
@@ -74,6 +74,7 @@ def sine(run: Run) -> dict[str, Any]:
         "half": 200.0 * float(np.sin(omega * period / 4.0)),
         "samples": 2.0 * np.pi / (omega * period),
         "give": float((np.abs(give) / np.abs(exact)).min()),
+        "widest_give": float((np.abs(give) / np.abs(exact)).max()),
     }
 
 

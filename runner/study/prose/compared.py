@@ -22,6 +22,7 @@ _SHORT = 0.05  # s at the end in which torques that chatter are shown tick by ti
 _AT_REST = 1.0  # s at the end in which a printed steady-state error is drawn
 _POINTS, _TOGETHER = 1000, 0.02  # a longer curve is drawn as an envelope of intervals of this length, in s
 _NARROW = 0.01  # of the range of a curve: a band that is narrower on average is not drawn
+_WIDE = 0.5  # of the range of a curve: a band that is wider on average would hide the panel
 _VISIBLE = 20.0  # a printed value that is this many times larger or smaller than all curves is not drawn
 _EMPTY: FloatArray = np.zeros(0)
 
@@ -62,8 +63,8 @@ def compare(
         f"{stages[-1].capitalize()} torque": last,
     }  # fmt: skip
     panels = [figure.torques(title, [joints.index(name) + 1 for name in group]) for title, group in groups.items()]
-    if stages and any(caveat["rule"] == "chatter" for run in shown.values() for caveat in run.caveats):
-        ticks = [joints.index(name) + 1 for name in last]
+    if any(caveat["rule"] == "chatter" for run in shown.values() for caveat in run.caveats):
+        ticks = [joints.index(name) + 1 for name in (last if stages else joints)]
         panels.append(figure.torques(f"{[*groups][-1]}, last {quantity(_SHORT, 's')}", ticks, _SHORT))
     panels += [figure.error(f"{stages[0].capitalize()} end point, error", f"{stages[0]}_error")] if stages else []
     panels.append(figure.error("Tip error", "error", "settling_time", "max_axis_error"))
@@ -92,7 +93,9 @@ class _Figure:
     def torques(self, title: str, joints: Sequence[int], last: float | None = None) -> Panel:
         """Return the torques of some joints, counted from 1; with `last` those of the last seconds."""
         curves = self._curves({str(joint): f"tau{joint}" for joint in joints}, last)
-        return Panel(title, "time (s)", "torque (N m)", curves)
+        lines = [replace(each, low=None, high=None) if _is_bar(each) else each for each in curves]
+        told = f" (means over {quantity(_TOGETHER, 's')})" if any(map(_is_bar, curves)) else ""
+        return Panel(f"{title}{told}", "time (s)", "torque (N m)", lines)
 
     def error(self, title: str, signal: str, *metrics: str, enlarged: bool = False) -> Panel:
         """Return an error along x, y and z, with the printed values of some metrics that its scale can show."""
@@ -159,6 +162,13 @@ def _bounded(series: Series) -> Series:
     assert series.high is not None  # noqa: S101
     seen = np.mean(series.high - series.low) > _NARROW * np.ptp(series.y)
     return series if seen else replace(series, low=None, high=None)
+
+
+def _is_bar(series: Series) -> bool:
+    """Tell if a curve goes from limit to limit so often that its band fills the panel."""
+    if series.low is None or series.high is None:
+        return False
+    return bool(np.mean(series.high - series.low) > _WIDE * (np.max(series.high) - np.min(series.low)))
 
 
 def _dotted(x: Sequence[float], y: Sequence[float]) -> Series:

@@ -1,8 +1,9 @@
 """Blocks from Markdown headings, paragraphs and lists, parsed by markdown-it."""
 
 import dataclasses
+import math
 import re
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any, get_args
 
@@ -10,12 +11,13 @@ from markdown_it import MarkdownIt
 from markdown_it.token import Token
 from mdit_py_plugins.dollarmath import dollarmath_plugin
 
-from runner.base.quantities import number
+from runner.base.quantities import ROUNDING, in_one_unit, number, smaller_units
 from runner.reporting.document import Block, Items, Section, Text
 from runner.reporting.markup import link_text, literal, mark_text
 from runner.study.measured import Measured
 from runner.study.prose.expressions import PLACEHOLDER, PRIVATE, ProseError, Values
 
+_SENTENCES = re.compile(r"(?<=[.;?!])\s")
 _NAMES = {
     "blockquote_open": "quotations",
     "ordered_list_open": "numbered lists",
@@ -91,7 +93,8 @@ class Paragraphs:
             if child.type != "text":
                 raise ProseError(self._file, line, f"'{text}': a title is plain text; write the rest in the paragraph")
             parts.append(literal(child.content))
-        return filled("".join(parts), self._values, self._file).replace("$$", "$")
+        shown = "".join(parts)
+        return filled(shown, self._values, self._file, values_shown(shown, self._values)).replace("$$", "$")
 
     def _paragraph(self, inline: Token, line: int) -> Iterator[Piece]:
         alone = PLACEHOLDER.sub("", inline.content).strip() == ""
@@ -115,29 +118,30 @@ class Paragraphs:
         """Return the text of a paragraph, with the marks of Text."""
         parts: list[str] = []
         children = iter(inline.children or ())
+        shown = values_shown(inline.content, self._values)
         for child in children:
             if child.type == "text":
-                parts.append(filled(literal(child.content), self._values, self._file))
+                parts.append(filled(literal(child.content), self._values, self._file, shown))
             elif child.type == "softbreak":
                 parts.append(" ")
             elif child.type == "code_inline":
-                parts.append(mark_text(filled(literal(child.content), self._values, self._file), "code"))
+                parts.append(mark_text(filled(literal(child.content), self._values, self._file, shown), "code"))
             elif child.type == "math_inline":
-                parts.append(f"${filled(child.content, self._values, self._file, mathematics=True)}$")
+                parts.append(f"${filled(child.content, self._values, self._file, {}, mathematics=True)}$")
             elif child.type in ("em_open", "link_open"):
-                parts.append(self._around(child, children, line))
+                parts.append(self._around(child, children, line, shown))
             else:
                 raise self._refused(child, line)
         return "".join(parts)
 
-    def _around(self, opening: Token, children: Iterator[Token], line: int) -> str:
+    def _around(self, opening: Token, children: Iterator[Token], line: int, shown: Mapping[int, str]) -> str:
         closing, words = opening.type.replace("_open", "_close"), []
         for child in children:
             if child.type == closing:
                 break
             if child.type not in ("text", "softbreak"):
                 raise ProseError(self._file, line, "emphasis and links hold plain words only")
-            words.append(filled(literal(child.content), self._values, self._file) or " ")
+            words.append(filled(literal(child.content), self._values, self._file, shown) or " ")
         text = "".join(words)
         return mark_text(text, "emphasis") if opening.type == "em_open" else link_text(text, str(opening.attrs["href"]))
 
@@ -152,13 +156,33 @@ def _is_block(value: Any) -> bool:
     return dataclasses.is_dataclass(value) and isinstance(value, (*get_args(Block), Section))
 
 
-def filled(text: str, values: Values, file: str, mathematics: bool = False) -> str:
+def values_shown(text: str, values: Values) -> dict[int, str]:
+    """Return the measured values of a text as strings, by placeholder: those of a sentence in one unit if that reads.
+
+    Args:
+        text: Sentences with placeholders.
+        values: The values of the chapter.
+    """
+    shown: dict[int, str] = {}
+    for sentence in _SENTENCES.split(text):
+        numbers = dict.fromkeys(int(number) for number in PLACEHOLDER.findall(sentence))
+        measured = {number: own for number in numbers if isinstance(own := values.found[number][0], Measured)}
+        for unit in {each.unit for each in measured.values() if smaller_units(each.unit)}:
+            sizes = {
+                number: each.value or 0.0 for number, each in measured.items() if each.unit == unit and _has_size(each)
+            }
+            shown |= zip(sizes, in_one_unit([*sizes.values()], unit), strict=True)
+    return shown
+
+
+def filled(text: str, values: Values, file: str, shown: Mapping[int, str], mathematics: bool = False) -> str:
     """Return a string with its placeholders replaced by their values. No value can become markup.
 
     Args:
         text: The string.
         values: The values of the chapter.
         file: Name of the chapter's file.
+        shown: How measured values are shown, by placeholder; see values_shown.
         mathematics: True if the string is between dollar signs, where only numbers may be inserted.
 
     Raises:
@@ -167,14 +191,19 @@ def filled(text: str, values: Values, file: str, mathematics: bool = False) -> s
 
     def show(found: re.Match[str]) -> str:
         value, line = values.found[int(found[1])]
-        shown = _shown(value)
-        if shown is None or (mathematics and not isinstance(value, int | float)):
+        text = shown.get(int(found[1])) or _shown(value)
+        if text is None or (mathematics and not isinstance(value, int | float)):
             what = "a formula takes numbers" if mathematics else "a sentence takes texts, numbers and measured values"
             hint = "; put a block in a separate paragraph" if not mathematics else ""
             raise ProseError(file, line, f"{what}, not {type(value).__name__}{hint}")
-        return PRIVATE.sub("\ufffd", shown).replace("$", "$$")
+        return PRIVATE.sub("\ufffd", text).replace("$", "$$")
 
     return PLACEHOLDER.sub(show, text)
+
+
+def _has_size(measured: Measured) -> bool:
+    """Tell if a value is finite and above rounding errors."""
+    return measured.value is not None and ROUNDING <= abs(measured.value) < math.inf
 
 
 def _shown(value: Any) -> str | None:

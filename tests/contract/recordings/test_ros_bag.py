@@ -123,5 +123,7 @@ def test_a_bag_that_unpacks_to_more_than_allowed_is_not_held(write, monkeypatch,
 def test_without_the_extra_its_name_is_told(write, monkeypatch):
     path = write({"/joint_states": states()})
     monkeypatch.setitem(sys.modules, "mcap.stream_reader", None)
-    with pytest.raises(RunnerError, match=r"pip install 'arm-control-runner\[ros\]'"):
+    with pytest.raises(
+        RunnerError, match=r"uv pip install -e '\.\[ros\]'` in the checkout, or `pip install 'WHEEL\[ros\]'`"
+    ):
         read_columns(path, None, WANTED)

@@ -2,9 +2,11 @@
 
 import shutil
 
+import numpy as np
 import pytest
 from fixtures.stored import GRID, NOISY
 
+from runner.base.quantities import quantity
 from runner.reporting import outline
 from runner.reporting.document import Curves, Maps, Playback, RunList, Text
 from runner.reporting.formulas import faulty
@@ -156,9 +158,18 @@ def test_a_sweep_over_seeds_is_not_compared_in_pairs(copy_run, tmp_path):
     outputs = tmp_path / "outputs"
     names = [copy_run("pairs").name, run(*NOISY, "seed=1", f"outputs={outputs}").hash]
     jobs = [((f"seed={seed}", *NOISY), name) for seed, name in enumerate(names)]
-    document = sweep_document(open_sweep(write_sweep(outputs, jobs, "...")))
-    assert "Compared in pairs" not in [section.title for section in document.sections]
+    sweep = open_sweep(write_sweep(outputs, jobs, "..."))
+    document = sweep_document(sweep)
+    titles = [section.title for section in document.sections]
     assert "smaller" not in document.abstract
+    assert not {"Compared in pairs", "Effects of the axes", "Distributions"} & {*titles}
+    assert titles[: document.shown] == ["Distribution over the seeds"]
+    drawn = np.sort([value for one in sweep.runs() for value in one.values("max_tracking_error")])
+    curve = blocks_of(document, Curves)[0].panels[0].series[0]
+    assert curve.x == pytest.approx(np.repeat(drawn, 2))
+    assert (curve.y[0], curve.y[-1]) == (0.0, 1.0)
+    assert f"Over {len(drawn)} draws the median of the largest tracking error is " in document.abstract
+    assert quantity(float(np.median(drawn)), "m") in document.abstract
 
 
 def test_a_run_without_a_trace_says_how_to_get_one(sweep12, tmp_path):

@@ -84,8 +84,8 @@ SOME = {
     [
         ("thesis", 295, 0),
         ("thesis_beyond", 267, 0),
-        ("xarm7", 119, 0),
-        ("meca500", 244, 36),
+        ("xarm7", 121, 0),
+        ("meca500", 250, 36),
         ("engines", 253, 0),
         ("precision", 90, 0),
         ("benchmark", 2444, 0),

@@ -10,7 +10,7 @@ GROUPS = {
     name: re.findall(r"- (\w+\.md)", rest)
     for name, rest in re.findall(r"^  - ([\w-]+):(.*?)(?=^  - |\Z)", NAV, re.M | re.S)
 }
-OPENINGS = {"Tutorials": r"In \d+ minutes you will ", "How-to": "Goal: ", "Explanation": r"[^.]*\?"}
+OPENINGS = {"Tutorials": "You will ", "How-to": "Goal: ", "Explanation": r"[^.]*\?"}
 BLOCK = re.compile(r"^(?:    \S|```|!\[|\| |::: )", re.M)
 MOST_WORDS = 60
 

@@ -14,7 +14,7 @@ PRESETS = {"as_reported": "fitted", "full_equations": "printed"}
 CLAIMS = load_claims("thesis")
 
 
-def run(error=1.0, ticks=400, staged=False, kind="goal", caveats=()):
+def run(error=1.0, ticks=400, staged=False, kind="goal", caveats=(), jumps=1.0):
     t = np.linspace(0.0, 4.0, ticks + 1)
     stages, joints = (["macro", "mini"], ["q1", "mini_q1"]) if staged else (["arm"], ["q1"])
     record = {
@@ -25,7 +25,7 @@ def run(error=1.0, ticks=400, staged=False, kind="goal", caveats=()):
         "provenance": {"stages": stages, "joints": joints, "command": "runner", "commit": ""},
     }
     made = Run(Path("run"), {"trajectory": {"kind": kind}}, record)
-    chatter = 50.0 * np.where(np.arange(ticks + 1) % 2, 1.0, -1.0)
+    chatter = np.where(t <= jumps * t[-1], 50.0, 0.0) * np.where(np.arange(ticks + 1) % 2, 1.0, -1.0)
     errors = {f"{name}_{axis}": error * np.exp(-3.0 * t) for name in ("error", "macro_error") for axis in "xyz"}
     made.__dict__["_table"] = pyarrow.table({"t": t, "tau1": chatter, "tau2": np.sin(t)} | errors)
     return made
@@ -75,10 +75,15 @@ def test_a_staged_arm_has_a_panel_for_each_stage_and_one_for_the_carrying_end_po
         assert all(np.ptp(series.x) < 0.051 for series in panel.series if series.x.size)
 
 
-def test_a_curve_that_jumps_becomes_a_band_and_a_smooth_one_stays_a_line():
-    torque, error, _ = figure("figure_3_5", run(ticks=4000), run(ticks=4000)).panels
+def test_a_curve_that_jumps_now_and_then_becomes_a_band_one_that_always_jumps_its_mean_and_a_smooth_one_a_line():
+    torque, error, _ = figure("figure_3_5", run(ticks=4000, jumps=0.2), run(ticks=4000, jumps=0.2)).panels
     jumping = next(series for series in torque.series if series.x.size > 10)
     assert (jumping.low.min(), jumping.high.max()) == (-50.0, 50.0)
+    assert torque.title == "Torque"
+    bars = figure("figure_3_5", run(ticks=4000), run(ticks=4000)).panels[0]
+    assert bars.title == "Torque (means over 20 ms)"
+    assert [series.low for series in bars.series] == [None] * len(bars.series)
+    assert max(np.median(np.abs(series.y)) for series in bars.series if series.x.size > 10) < 5.0
     smooth = next(series for series in error.series if series.x.size > 10)
     assert smooth.low is None
     assert smooth.x.size < 250

@@ -56,6 +56,26 @@ def test_values_have_their_unit():
     )
 
 
+def test_lengths_and_times_of_a_sentence_have_one_unit_if_that_needs_no_power_of_ten():
+    sizes = {"far": 0.109, "near": 4.31e-5, "nearest": 1.45e-8, "late": 0.25, "later": 0.03, "rounding": 1e-15}
+    units = {"late": "s", "later": "s"}
+    names = {name: Measured(name, value, units.get(name, "m")) for name, value in sizes.items()}
+
+    def told(sentence):
+        return read(sentence, names).blocks[0].text
+
+    assert told("It is {{ far }}, then *{{ near }}*; later {{ near }}.") == (
+        f"It is 109 mm, then {mark_text('0.0431 mm', 'emphasis')}; later 0.0431 mm."
+    )
+    assert told("{{ far }} and {{ nearest }}. Else {{ near }}, {{ nearest }}.") == (
+        "0.109 m and 0.0145 µm. Else 43.1 µm, 0.0145 µm."
+    )
+    assert told("After {{ late }}, not {{ later }}, {{ far }}.") == "After 0.25 s, not 0.03 s, 0.109 m."
+    assert told("{{ far }} and {{ rounding }}.") == "0.109 m and less than 1·10⁻¹² m."
+    (title,) = read("## {{ far }} and {{ near }}\n\nSo.", names).sections
+    assert title.title == "109 mm and 0.0431 mm"
+
+
 def test_no_value_becomes_markup_a_block_or_an_expression():
     (text,) = read("Say {{ evil }} here.").blocks
     assert text.text == "Say <b>$$x$$ *a* [l](http://q) {{ 1 }} \ufffdb\ufffd ::: finding here."
