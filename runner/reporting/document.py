@@ -271,6 +271,7 @@ class Playback:
         target: Desired position of the tip at each instant, shape (T, 3), in m.
         joints: Name and position of each joint at each instant, shape (T, 3), in m.
         others: Motions of further runs, which can be chosen or shown as a ghost.
+        look: Index into the palette of its path; None for that of an arm, or of a ghost.
     """
 
     block: ClassVar[str] = "playback"
@@ -287,6 +288,7 @@ class Playback:
     target: FloatArray = field(default_factory=lambda: np.zeros((0, 3)))
     joints: Mapping[str, FloatArray] = field(default_factory=dict)
     others: Sequence["Playback"] = ()
+    look: int | None = None
 
 
 @dataclass(frozen=True)

@@ -119,6 +119,10 @@ class Empty(NamedTuple):
         return f"neither has a value in {self.repetitions} of {self.of} repetitions{at}" if self.repetitions else ""
 
 
+NONE_EMPTY = Empty()
+"""No such repetitions."""
+
+
 @dataclass(frozen=True, eq=False)
 class Comparison:
     """Difference of b and a on the same seeds, in the pairs in which either has a value; there may be none.
@@ -139,7 +143,7 @@ class Comparison:
     error: float | None = None
     rounding: float = 0.0
     exact: bool = False
-    empty: Empty = Empty()
+    empty: Empty = NONE_EMPTY
 
     @property
     def n(self) -> int:

@@ -90,8 +90,9 @@ def compare(pairs: Pairs, metric: str) -> Comparison | None:
     """Return the difference of the second cells from the first in a metric; None if no repetition is in both.
 
     Each draw, that is a repetition of a seed, counts once, with the mean over the pairs of cells: cells of one seed
-    share its draws, so they are not further evidence. A repetition without a value in either counts nothing. If nothing is drawn, only the first draw counts and the
-    comparison is exact. Of more than MOST_PAIRS draws the same random selection is always taken.
+    share its draws, so they are not further evidence. A repetition without a value in either counts nothing. If nothing
+    is drawn, only the first draw counts and the comparison is exact. Of more than MOST_PAIRS draws the same random
+    selection is always taken.
 
     Args:
         pairs: The cells.

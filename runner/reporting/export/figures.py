@@ -1,6 +1,7 @@
 """Figures of a report as separate files: SVG and PDF at column width, points as CSV, captions without markup."""
 
 import itertools
+import math
 import re
 import tempfile
 from collections.abc import Iterator, Mapping, Sequence
@@ -168,15 +169,20 @@ def _as_pdf(svg: str) -> bytes:
 
 
 def as_csv(figure: Figure) -> bytes | None:
-    """Return all points of a figure, none left out, in the units that it shows; None for a drawing without any."""
-    rows = list(_rows(figure))
+    """Return all points of a figure, none left out, in the units that it shows; None for a drawing without any.
+
+    A number that is missing or beyond every number is an empty field, as in the tables of sweeps.
+    """
+    rows = [
+        ["" if isinstance(cell, float) and not math.isfinite(cell) else cell for cell in row] for row in _rows(figure)
+    ]
     return csv_text(rows).encode("utf-8", errors="replace") if rows else None
 
 
 def _rows(figure: Figure) -> Iterator[Row]:
     match figure:
         case Curves():
-            yield ("panel", "curve", "x axis", "x", "y axis", "y")
+            yield ("panel", "curve", "x axis", "x", "y axis", "y", "low", "median", "high")
             for panel in figure.panels:
                 for series in panel.series:
                     yield from _of_curve(panel, series)
@@ -196,8 +202,11 @@ def _rows(figure: Figure) -> Iterator[Row]:
 
 
 def _of_curve(panel: Panel, series: Series) -> Iterator[Row]:
-    edges = (("", series.y), (" (lower edge of its band)", series.low), (" (upper edge of its band)", series.high))
-    for what, heights in edges:
-        for x, y in [] if heights is None else zip(series.x.tolist(), heights.tolist(), strict=True):
-            place = panel.x_names[int(x)] if panel.x_names and x == int(x) else x
-            yield (panel.title, f"{series.name or series.label}{what}", panel.x_label, place, panel.y_label, y)
+    """Yield the points of a curve: y of a point, or the ends of its band or bar and what is between them."""
+    name = series.name or series.label
+    nothing = [math.nan] * series.x.size
+    low, high = (nothing if edge is None else edge.tolist() for edge in (series.low, series.high))
+    for x, y, *ends in zip(series.x.tolist(), series.y.tolist(), low, high, strict=True):
+        place = panel.x_names[int(x)] if panel.x_names and x == int(x) and 0 <= x < len(panel.x_names) else x
+        numbers = (y, math.nan, math.nan, math.nan) if series.low is None else (math.nan, ends[0], y, ends[1])
+        yield (panel.title, name, panel.x_label, place, panel.y_label, *numbers)

@@ -134,7 +134,8 @@ def _add(axes: Axes, run: Playback, camera: Camera, points: float, ghost: bool) 
     """Add a run to the picture; a ghost is grey and behind everything."""
     if run.desired is not None and not ghost:
         axes.plot(*camera.project(run.desired).T, color=GREY, lw=1.2, ls=(0, (4, 2)), zorder=-1e5)
-    axes.plot(*camera.project(run.path).T, color=_GHOST if ghost else palette.color(1), lw=1.2, zorder=-1e5)
+    color = palette.color(1 if run.look is None else run.look)
+    axes.plot(*camera.project(run.path).T, color=_GHOST if ghost else color, lw=1.2, zorder=-1e5)
     lines = list(_shape_lines(axes, run, camera, points, ghost))
     return _Drawn(run, frames(run), lines, -1e4 if ghost else 0.0)
 

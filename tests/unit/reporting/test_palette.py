@@ -7,7 +7,7 @@ import pytest
 from matplotlib.colors import to_rgb
 
 from runner.reporting.charts import palette
-from runner.reporting.charts.static import COLOR_MARKS
+from runner.reporting.charts.palette import MARKS as COLOR_MARKS
 
 # Machado, Oliveira, Fernandes: A Physiologically-based Model for Simulation of Color Vision Deficiency, IEEE TVCG 2009,
 # table 1, severity 1.0; they act on linear red, green and blue.
