@@ -3,7 +3,6 @@
 Example: runner figures latest --width double
 """
 
-import math
 import sys
 from argparse import Namespace
 from collections.abc import Mapping, Sequence
@@ -13,7 +12,7 @@ from typing import TYPE_CHECKING
 from runner.base.errors import RunnerError, unknown
 from runner.base.paths import STUDY_FILE
 from runner.base.sanitize import one_line
-from runner.cli.arguments import Parser, Stored
+from runner.cli.arguments import WIDTHS, Parser, Stored, millimetres
 from runner.config.compose.files import outputs_dir
 from runner.study.names import study_names
 
@@ -23,8 +22,6 @@ if TYPE_CHECKING:
     from runner.reporting.export.figures import Figure
     from runner.store import Run
 
-_COLUMNS = {"single": 88.0, "double": 180.0}  # mm
-_NARROWEST, _WIDEST = 60.0, 400.0  # mm
 _MOTIONS = (".gif", ".mp4")
 
 
@@ -42,7 +39,7 @@ def add_arguments(parser: Parser) -> None:
         "--width",
         default="single",
         metavar="W",
-        help="single (88 mm), double (180 mm) or millimetres (default: single)",
+        help=f"{WIDTHS} (default: single)",
     )
     parser.add_argument("--only", metavar="NAME", help="figures whose names begin so (default: all)")
     parser.add_argument("--motion", type=Path, metavar="FILE", help="write the first motion to FILE: .gif or .mp4")
@@ -50,7 +47,7 @@ def add_arguments(parser: Parser) -> None:
 
 def run(options: Namespace) -> int:
     """Write the figures; print their folder as the last line."""
-    width = _millimetres(options.width)
+    width = millimetres(options.width)
     if options.motion is not None and options.motion.suffix.lower() not in _MOTIONS:
         raise RunnerError(unknown("ending", options.motion.suffix, _MOTIONS, f"--motion {options.motion}"))
     if options.motion is not None and options.output is not None:
@@ -86,17 +83,6 @@ def _write_motion(figures: "Mapping[str, Figure]", path: Path, sheet: "Sheet") -
     if written != path:
         print("runner: no ffmpeg is installed, so that the motion is a GIF", file=sys.stderr)
     return written
-
-
-def _millimetres(text: str) -> float:
-    try:
-        width = _COLUMNS.get(text) or float(text.removesuffix("mm"))
-    except ValueError:
-        width = math.nan
-    if not _NARROWEST <= width <= _WIDEST:
-        widths = f"single (88 mm), double (180 mm), or {_NARROWEST:g} to {_WIDEST:g} in mm"
-        raise RunnerError(f"--width: not a width ('{text}'). Allowed: {widths}.")
-    return width
 
 
 def _study_of(path: Path) -> tuple[str, Path] | None:
