@@ -53,7 +53,7 @@ def run(options: Namespace) -> int:
     if options.motion is not None and options.output is not None:
         raise RunnerError(f"--output: not with --motion ({options.output}), which names its own file.")
     from runner.reporting.charts.sheet import column
-    from runner.reporting.export.figures import choose_figures, figures_of, write_figures
+    from runner.reporting.export.figures import choose_figures, figures_of, tell_widths, write_figures
     from runner.store.kinds import report_place
 
     document, report = _document(options.folders)
@@ -62,6 +62,8 @@ def run(options: Namespace) -> int:
         print(_write_motion(figures, options.motion, column(width)))
         return 0
     folder = options.output or report_place(report.parent.parent, f"{report.name}/figures")
+    for text in tell_widths(figures, column(width)):
+        print(f"runner: {text}", file=sys.stderr)
     for name in write_figures(figures, folder, column(width)):
         print(name)
     print(folder)
@@ -71,7 +73,7 @@ def run(options: Namespace) -> int:
 def _write_motion(figures: "Mapping[str, Figure]", path: Path, sheet: "Sheet") -> Path:
     """Write the first motion; print what it shows and which format it has."""
     from runner.reporting.document import Playback
-    from runner.reporting.export.motion import write_motion
+    from runner.reporting.export.motion import speed_told, write_motion
 
     motion = next((figure for figure in figures.values() if isinstance(figure, Playback)), None)
     if motion is None:
@@ -79,6 +81,8 @@ def _write_motion(figures: "Mapping[str, Figure]", path: Path, sheet: "Sheet") -
     for who, run in zip(("the arm", "the grey arm"), (motion, *motion.others[-1:]), strict=False):
         if run.name:
             print(one_line(f"runner: {who} is {run.name}"), file=sys.stderr)
+    if told := speed_told(motion):
+        print(f"runner: {told}", file=sys.stderr)
     written = write_motion(motion, path, sheet)
     if written != path:
         print("runner: no ffmpeg is installed, so that the motion is a GIF", file=sys.stderr)

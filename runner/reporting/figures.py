@@ -2,12 +2,13 @@
 
 from collections.abc import Sequence
 from dataclasses import replace
+from functools import partial
 
 import numpy as np
 
 from runner.base.arrays import FloatArray
 from runner.base.quantities import quantity
-from runner.reporting.charts.arm import arm_motion, moving_arm
+from runner.reporting.charts.arm import WIDE, arm_motion, moving_arm
 from runner.reporting.charts.figure import spaced_indices
 from runner.reporting.document import Cover, Curves, Origin, Panel, Playback, Series
 from runner.reporting.playback import joint_places, playback_bodies
@@ -139,15 +140,24 @@ def playback(run: Run, caption: str, until: float | None = None, frames: int = 1
         tip=tip[shown],
         target=desired[shown],
         joints=joint_places(model, q[shown]),
+        draw=partial(still_motion, run, until) if has_still else None,
     )
 
 
-def still_motion(run: Run, until: float | None = None, has_words: bool = True) -> str:
-    """Return the motion of a run as a still picture, up to a time in s; without legend and labels if it is small."""
+def still_motion(run: Run, until: float | None = None, width: float = WIDE, has_words: bool = True) -> str:
+    """Return the motion of a run as a still picture.
+
+    Args:
+        run: The run.
+        until: End of the part shown, in s; None shows it all.
+        width: Its width, in inches; see `arm_motion`.
+        has_words: Whether it has a legend and labels, which a small one leaves out.
+    """
     t, q, tip, desired = _motion(run, until)
     shown = spaced_indices(len(t), _STILLS)
     path = desired if np.ptp(desired, axis=0).any() else np.vstack([tip[0], desired[0]])
-    return arm_motion(run.model, q[shown], t[shown].tolist(), tip, path, desired[-1], has_words=has_words)
+    return arm_motion(run.model, q[shown], t[shown].tolist(), tip, path, desired[-1],
+                      has_words=has_words, width=width)  # fmt: skip
 
 
 def _motion(run: Run, until: float | None) -> tuple[FloatArray, ...]:

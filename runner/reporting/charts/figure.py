@@ -81,6 +81,16 @@ class Panel:
     has_legend: bool = True
 
 
+NOTHING = "never"
+"""Word in a panel without any value, as in a cell of a map."""
+
+
+def is_empty(panel: Panel) -> bool:
+    """Return True if the named curves of a panel have places, but no value at any of them."""
+    named = [series for series in panel.series if (series.name or series.label) and series.x.size]
+    return bool(named) and not any(np.isfinite(series.y).any() for series in named)
+
+
 def shares_legend(panels: Sequence[Panel]) -> bool:
     """Return True if one legend serves several panels: their named curves have the same names, styles and colours."""
     entries = [

@@ -4,16 +4,17 @@ import base64
 import html
 import math
 import re
-import textwrap
 from collections.abc import Sequence
 from typing import Any
 
 import numpy as np
 
 from runner.base.arrays import FloatArray
+from runner.base.quantities import bind_label
 from runner.base.sanitize import plain
 from runner.reporting.charts import palette, scales
 from runner.reporting.charts.figure import (
+    NOTHING,
     Curves,
     Map,
     Maps,
@@ -22,12 +23,14 @@ from runner.reporting.charts.figure import (
     band,
     bars,
     coarsen,
+    is_empty,
     shares_legend,
     shifted,
     thin,
     upright,
     usable,
 )
+from runner.reporting.charts.letters import wrap
 
 Json = dict[str, Any]
 
@@ -36,7 +39,9 @@ _MARKS = {"o": "circle", "s": "square", "^": "triangle-up", "D": "diamond", "v":
           "X": "x", "<": "triangle-left"}  # fmt: skip
 _MODES = {"line": "lines", "dashed": "lines", "dotted": "lines", "points": "markers", "points_line": "lines+markers"}
 _DASHES = {"dashed": "dash", "dotted": "dot"}
-_LEGEND_WIDTH, _TITLE_WIDTH, _UPRIGHT_WIDTH = 40, 45, 26
+_LEGEND_WIDTH, _TITLE_WIDTH, _UPRIGHT_WIDTH = 230.0, 260.0, 150.0  # px that a page has for them at least
+_LETTERS = 12.0  # px
+_NEVER = {"text": NOTHING, "x": 0.5, "y": 0.5, "xref": "paper", "yref": "paper", "showarrow": False}
 _WIDTH = 1.7  # px of a line
 _POINTS = 500  # of a curve on a page: two for each pixel of a panel
 _MOST_NAMES = 16
@@ -81,6 +86,7 @@ def _panel(panel: Panel) -> Json:
     layout = {
         "xaxis": across | _named_places(panel.x_names) if panel.x_names else across,
         "yaxis": _axis(panel.y_label, panel.y_log, panel.y_range, heights, _UPRIGHT_WIDTH),
+        **({"annotations": [_NEVER]} if is_empty(panel) else {}),
         "showlegend": panel.has_legend and any(plain(series.name).strip() for series in panel.series),
         "hovermode": "x unified" if all(map(_compared, panel.series)) else "closest",
     }
@@ -193,7 +199,7 @@ def _band(series: Series, group: int) -> list[Json]:
 
 
 def _axis(
-    label: str, log: bool, limits: tuple[float, float] | None, values: list[FloatArray], width: int = _TITLE_WIDTH
+    label: str, log: bool, limits: tuple[float, float] | None, values: list[FloatArray], width: float = _TITLE_WIDTH
 ) -> Json:
     title = {"text": _lines(label, width)}
     axis: Json = {"title": title, "type": "log" if log else "linear", "hoverformat": ".5~g"}
@@ -219,9 +225,9 @@ def _marks(shown: tuple[float, float] | None, values: list[FloatArray]) -> Json:
     return {"tickmode": "array", "tickvals": places, "ticktext": [write(place) for place in places]}
 
 
-def _lines(text: str, characters: int) -> str:
-    """Return a string broken into lines, which Plotly does not do by itself."""
-    return "<br>".join(neutral(line) for line in textwrap.wrap(plain(text), characters))
+def _lines(text: str, width: float) -> str:
+    """Return a string broken into lines of a width, in px, which Plotly does not do by itself."""
+    return "<br>".join(neutral(line) for line in wrap(bind_label(plain(text).strip()), width, _LETTERS))
 
 
 def _compared(series: Series) -> bool:

@@ -20,6 +20,7 @@ from runner.base.arrays import FloatArray
 from runner.base.sanitize import plain
 from runner.reporting.charts import palette, scales
 from runner.reporting.charts.figure import (
+    NOTHING,
     Curves,
     Map,
     Maps,
@@ -27,6 +28,7 @@ from runner.reporting.charts.figure import (
     Series,
     band,
     bars,
+    is_empty,
     shares_legend,
     shifted,
     thin,
@@ -128,9 +130,14 @@ class _Shown(Figure):
     """A figure that a notebook shows although pyplot, which may not be used there, does not know it."""
 
     def _repr_png_(self) -> bytes:
-        stream = io.BytesIO()
-        self.savefig(stream, format="png", dpi=150)
-        return stream.getvalue()
+        return as_png(self)
+
+
+def as_png(figure: Figure) -> bytes:
+    """Return a figure as PNG."""
+    stream = io.BytesIO()
+    figure.savefig(stream, format="png", dpi=150)
+    return stream.getvalue()
 
 
 def _figure(figure: Curves | Maps, sheet: Sheet) -> Figure:
@@ -194,7 +201,10 @@ def _maps(maps: Maps, sheet: Sheet) -> Figure:
         _draw_legend(axes, frame, handles, "upper left", (0, -(frame.bottom - 0.02) / frame.height))
     bottom = 1 - (max((frame.top for frame in rows[0]), default=0.0) + height) / total if rows else 0.0
     bar = figure.add_axes(((room + 0.1) / sheet.width, bottom, 0.1 / sheet.width, height / total))
-    figure.colorbar(ScalarMappable(colors, _COLORS), cax=bar).set_ticks(places, labels=marks)
+    scale = figure.colorbar(ScalarMappable(colors, _COLORS), cax=bar)
+    scale.set_ticks(places, labels=marks)
+    if scale.solids is not None:
+        scale.solids.set(rasterized=False, edgecolor="face")  # vectors without seams
     literal(bar.yaxis.label, wrap_text(maps.value_label, height / sheet.character))
     bar.grid(False)
     return figure
@@ -276,6 +286,8 @@ def _draw_panel(axes: Axes, frame: _Frame) -> list[Line2D]:
     else:
         whole = all((series.x[np.isfinite(series.x)] % 1.0 == 0.0).all() for series in panel.series)
         _mark(axes, "x", 5, whole)
+    if is_empty(panel):
+        literal(axes.text(0.5, 0.5, "", ha="center", va="center", transform=axes.transAxes), NOTHING)
     _mark(axes, "y", max(3, int(frame.height / (0.22 * sheet.scale))))
     return handles
 

@@ -23,7 +23,8 @@ from runner.reporting.outline import blocks, numbered_place
 from runner.store.atomic import write_atomically
 
 _WIDTH, _HEIGHT = re.compile(r'\bwidth="([\d.]+)pt"'), re.compile(r'\bheight="([\d.]+)pt"')
-_POINTS = 72.0  # in an inch
+_POINTS, _MM = 72.0, 25.4  # in an inch
+_LEAST = 7.0 / 7.5  # of a drawing, whose smallest letters are of 7.5 pt
 _LONGEST = 100  # letters of a file's name
 _WORD = re.compile("[a-z0-9]+")
 _OF_JOINT = re.compile(r"\b(torque|force) of \S+(?= \()")
@@ -142,20 +143,29 @@ def _drawn(figure: Figure, sheet: Sheet) -> tuple[str, bytes]:
         case Picture():
             svg = _fitted(figure.svg, sheet)
         case Playback():
-            svg = _fitted(figure.still, sheet)
+            svg = _fitted(figure.draw(sheet.width) if figure.draw else figure.still, sheet)
     return svg, _as_pdf(svg)
 
 
 def _fitted(svg: str, sheet: Sheet) -> str:
-    """Return a drawing of at most the width of the sheet: unchanged, or smaller as a whole."""
+    """Return a drawing of at most the width of the sheet: unchanged, or smaller as a whole while its text is read."""
     head, end, rest = svg.partition("<g ")
     width, height = _WIDTH.search(head), _HEIGHT.search(head)
     if width is None or height is None:
         return svg
-    shrunk = min(1.0, sheet.width * _POINTS / float(width[1]))
+    shrunk = min(1.0, max(_LEAST, sheet.width * _POINTS / float(width[1])))
     for size, found in (("width", width), ("height", height)):
         head = head.replace(found[0], f'{size}="{shrunk * float(found[1]):.6g}pt"')
     return head + end + rest
+
+
+def tell_widths(figures: Mapping[str, Figure], sheet: Sheet) -> Iterator[str]:
+    """Yield which drawings are wider than the sheet, as their text would be too small."""
+    for name, figure in figures.items():
+        found = _WIDTH.search(figure.svg.partition("<g ")[0]) if isinstance(figure, Picture) else None
+        width = _LEAST * float(found[1]) / _POINTS if found else 0.0
+        if width > sheet.width:
+            yield f"{name} is {_MM * width:.0f} mm wide: in {_MM * sheet.width:.0f} mm its text is below 7 pt"
 
 
 def _as_pdf(svg: str) -> bytes:
@@ -165,7 +175,8 @@ def _as_pdf(svg: str) -> bytes:
         (folder / "drawing.svg").write_text(svg, encoding="utf-8", errors="replace")
         source = '#set page(width: auto, height: auto, margin: 0pt)\n#image("drawing.svg")\n'
         (folder / "page.typ").write_text(source, encoding="utf-8")
-        return typst.compile(folder / "page.typ", root=folder, format="pdf", ignore_system_fonts=True, timestamp=0)
+        return typst.compile(folder / "page.typ", root=folder, format="pdf", ignore_system_fonts=True, timestamp=0,
+                             pdf_standards=["1.4"])  # fmt: skip
 
 
 def as_csv(figure: Figure) -> bytes | None:
