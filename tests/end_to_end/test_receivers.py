@@ -12,8 +12,8 @@ import typst
 from runner.base.paths import examples_dir
 
 CLASSES = ["[conference]{IEEEtran}", "[journal]{IEEEtran}", "[5p,twocolumn]{elsarticle}", "{llncs}"]
-RUN = ("robot=macro", "plant=rk4", "trajectory=quintic", "trajectory.duration=0.6", "noise=thesis", "repetitions=6",
-       "controller=computed_torque,operational_space")  # fmt: skip
+RUN = ("robot=macro", "controller=computed_torque,operational_space", "trajectory=quintic", "noise=thesis",
+       "repetitions=10")  # fmt: skip
 TABLE = ("--by", "controller", "--metrics", "max_tracking_error,peak_torque", "--width", "single")
 
 pytestmark = pytest.mark.slow

@@ -5,7 +5,7 @@ from collections.abc import Iterable, Sequence
 
 from runner.base.sanitize import plain
 from runner.reporting.export.columns import BEYOND, MISSING, PaperColumn, Unit, Written, lay_out
-from runner.reporting.export.fitting import LETTERS, fit
+from runner.reporting.export.fitting import fit
 from runner.reporting.table import Table
 
 _MEANT = {
@@ -40,8 +40,8 @@ def write_latex(table: Table, caption: str, sources: Sequence[str], width: float
     titles: Sequence[Sequence[str]] = [[each.head] for each in columns]
     edge, begin, end = "", [], ""
     if width is not None:
-        titles, room = fit(columns, width, _measured, at_edges=False)
-        size = rf"\fontsize{{{LETTERS:g}}}{{{1.2 * LETTERS:g}}}\selectfont"
+        titles, room, letters = fit(columns, width, _measured, at_edges=False)
+        size = rf"\fontsize{{{letters:g}}}{{{1.2 * letters:g}}}\selectfont"
         edge, begin, end = "@{}", [rf"{{{size}\setlength{{\tabcolsep}}{{{room:g}pt}}%"], "}"
     tabular = [
         *begin,

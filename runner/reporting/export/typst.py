@@ -4,7 +4,7 @@ from collections.abc import Sequence
 
 from runner.base.sanitize import one_line
 from runner.reporting.export.columns import PaperColumn, lay_out
-from runner.reporting.export.fitting import LETTERS, fit
+from runner.reporting.export.fitting import fit
 from runner.reporting.table import Table
 from runner.reporting.templating import quote_typst
 
@@ -23,9 +23,9 @@ def write_typst(table: Table, caption: str, sources: Sequence[str], width: float
     """
     columns = lay_out(table)
     titles: Sequence[Sequence[str]] = [[each.head] for each in columns]
-    fitted = ""
+    fitted, letters = "", 0.0
     if width is not None:
-        titles, room = fit(columns, width, lambda column: [_cells(column)], at_edges=True)
+        titles, room, letters = fit(columns, width, lambda column: [_cells(column)], at_edges=True)
         fitted = f" inset: (x: {room:g}pt, y: 3pt),"
     head = ", ".join(quote_typst("\n".join(lines)).replace("\n", "\\n") for lines in titles)
     rows = [", ".join(map(quote_typst, cells)) for cells in zip(*map(_cells, columns), strict=True)]
@@ -39,7 +39,7 @@ def write_typst(table: Table, caption: str, sources: Sequence[str], width: float
         ")",
     ]
     if width is not None:
-        lines = [f"text({LETTERS:g}pt, {lines[0]}", *lines[1:-1], "))"]
+        lines = [f"text({letters:g}pt, {lines[0]}", *lines[1:-1], "))"]
     return "\n".join(
         [
             *(f"// {one_line(source)}" for source in sources),
