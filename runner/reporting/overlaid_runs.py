@@ -44,23 +44,19 @@ def overlaid(levels: Sequence[Level], told: str = "", played: str = "") -> list[
         told: Sentence on the cells that are shown, for the caption; empty if the names say it.
         played: Sentence on the cells that are played.
     """
-    found = list(_quantities(levels))
-    curves = [[_curve(level, values) for level in levels] for _, _, values in found]
-    parted = (
-        1 < len(levels) <= _MOST_SIDE_BY_SIDE
-        and len(levels) * len(found) <= _MOST_PANELS
-        and any(_is_noisy(series.y) for some in curves for series in some)
-    )
-    panels = []
-    for (title, label, _), some in zip(found, curves, strict=True):
-        if parted:
-            shared = _range(some)
-            panels += [
-                Panel(f"{title}, {each.name}", "time (s)", label, [each], y_range=shared, has_legend=False)
-                for each in some
-            ]
-        else:
-            panels.append(Panel(title, "time (s)", label, some))
+    found = [(*each, [_curve(level, each[2]) for level in levels]) for each in _quantities(levels)]
+    several = 1 < len(levels) <= _MOST_SIDE_BY_SIDE and len(levels) * len(found) <= _MOST_PANELS
+    noisy = [several and any(_is_noisy(series.y) for series in some) for *_, some in found]
+    parted, together = ([each for each, own in zip(found, noisy, strict=True) if own is kind] for kind in (True, False))
+    panels = [
+        Panel(title, "time (s)", label, some, has_legend=not (parted and place))
+        for place, (title, label, _, some) in enumerate(together)
+    ]
+    for title, label, _, some in parted:
+        shared = _range(some)
+        panels += [
+            Panel(f"{title}, {each.name}", "time (s)", label, [each], y_range=shared, has_legend=False) for each in some
+        ]
     counts = sorted({len(level.runs) for level in levels})
     over = f"{counts[0]} cells" if counts[0] == counts[-1] else f"{counts[0]} to {counts[-1]} cells"
     band = (

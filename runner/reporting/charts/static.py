@@ -51,7 +51,7 @@ from runner.reporting.charts.sheet import (
 # all the curves.
 _LEFT, _RIGHT, _BOTTOM, _BARE = 0.64, 0.12, 0.42, 0.24  # the last one below an axis without a label
 _HEIGHTS, _LOWER = {1: 1.25, 2: 1.2}, 0.95  # of the axes by number of columns, and in more
-_ROWS = {0: 9.0, 2: 1.05, 3: 0.8, 4: 0.64, 7: 0.42}  # the same by number of rows, and in more
+_ROWS = {0: 9.0, 2: 1.05, 3: 0.8, 4: 0.64, 5: 0.5, 7: 0.42}  # the same by number of rows, and in more
 _ABOVE = 0.15  # by which a label next to an axis of curves may be longer than it
 _HANDLE, _GAP = 0.42, 0.12
 _LEAST = 1.55  # width of a panel
@@ -159,7 +159,7 @@ def _curves(curves: Curves, sheet: Sheet, kind: type[Figure] = Figure) -> Figure
         for panel in panels
     ]
     rows = [frames[start : start + columns] for start in range(0, len(frames), columns)]
-    alike = shared or (len(panels) > 1 and not any(panel.has_legend for panel in panels))
+    alike = shared or not all(panel.has_legend for panel in panels)
     if alike and len({panel.x_label for panel in panels}) == 1:
         # One label below the last panel of each column.
         rows[:-1] = [_bare(row, below) for row, below in itertools.pairwise(rows)]
