@@ -19,6 +19,7 @@ from runner.reporting.charts.sheet import Sheet
 from runner.reporting.consistency import make_consistent
 from runner.reporting.document import Curves, Document, Maps, Picture, Playback
 from runner.reporting.markup import spans
+from runner.reporting.metric_titles import capital
 from runner.reporting.outline import blocks, numbered_place
 from runner.store.atomic import write_atomically
 
@@ -98,7 +99,7 @@ def _lettered(panels: Sequence[Axes]) -> tuple[list[Axes], str]:
     letters = [f"({chr(ord('a') + place % 26)})" if len(panels) > 1 else "" for place in range(len(panels))]
     titles = [f"{letter} {panel.title}".strip() for letter, panel in zip(letters, panels, strict=True) if panel.title]
     untitled = [replace(panel, title=letter) for letter, panel in zip(letters, panels, strict=True)]
-    return untitled, f" {'; '.join(titles)}." if titles else ""
+    return untitled, f" {capital('; '.join(titles))}." if titles else ""
 
 
 def choose_figures(figures: Mapping[str, Figure], only: str | None) -> dict[str, Figure]:

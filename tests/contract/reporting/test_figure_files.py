@@ -60,7 +60,7 @@ def test_titles_of_panels_are_in_the_caption_and_letters_in_the_figure():
     figure, caption = for_paper(maps("m $$ $omega$"))
     assert [panel.title for panel in figure.panels] == ["(a)", "(b)"]
     assert caption == "m $ omega (a) m $$ $omega$; (b) m $$ $omega$."
-    assert for_paper(curves("m", panels=[curves("m").panels[0]]))[1] == "m m."
+    assert for_paper(curves("m", panels=[curves("m").panels[0]]))[1] == "m M."
     assert for_paper(playback())[1] == "It moves."
 
 
