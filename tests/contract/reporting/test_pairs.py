@@ -65,7 +65,7 @@ def test_missing_repetitions_are_left_out_and_failed_ones_are_beyond_every_numbe
 @pytest.fixture(name="blocks")
 def _blocks(monkeypatch):
     """Return the blocks on the first and the last cell, whose runs are not stored: no motion is shown."""
-    monkeypatch.setattr(distributions, "motion_blocks", lambda _: [])
+    monkeypatch.setattr(distributions, "motion_blocks", lambda *_: [])
     return lambda subject: distributions.extremes_section(subject, {}).blocks
 
 
