@@ -290,7 +290,7 @@ class Playback:
     joints: Mapping[str, FloatArray] = field(default_factory=dict)
     others: Sequence["Playback"] = ()
     look: int | None = None
-    draw: Callable[[float], str] | None = None
+    draw: Callable[[float], str] | None = field(default=None, repr=False, compare=False)
 
 
 @dataclass(frozen=True)

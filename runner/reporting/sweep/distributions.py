@@ -100,13 +100,11 @@ class ShownCells:
     Attributes:
         axis: The axis whose levels are told apart; None if only seeds were swept.
         cells: The cells of each of its levels, by ascending median, the name of the level, and its look.
-        of: Number of cells that they were chosen from.
         at: What all of them share, such as "noise.position=0.001"; empty for nothing.
     """
 
     axis: Axis | None
     cells: Sequence[tuple[str, Sequence[int], int]]
-    of: int
     at: str = ""
 
 
@@ -116,17 +114,18 @@ def choose_cells(subject: Subject, among: Sequence[int], at: str = "") -> ShownC
     axis = find_question(subject.axes, subject.measurements.question) or next(iter(axes), None)
     allowed = set(among)
     ordered = [cell for cell in subject.order.tolist() if cell in allowed]
-    ordered = [cell for cell in ordered if subject.measurements.statuses[cell] == "ok"] or ordered
+    sound = [cell for cell in ordered if subject.measurements.statuses[cell] == "ok"]
     if axis is None:
-        return ShownCells(None, [("all seeds", _some(ordered, _MOST_CELLS), 0)], len(ordered), at)
+        return ShownCells(None, [("all seeds", _some(sound or ordered, _MOST_CELLS), 0)], at)
     groups, looks = group_levels(axis), subject.looks(axis)
-    found = {group: [cell for cell in ordered if groups[cell] == group] for group in looks}
+    found = {group: [cell for cell in sound if groups[cell] == group]
+             or [cell for cell in ordered if groups[cell] == group] for group in looks}  # fmt: skip
     kept = [group for group, cells in found.items() if cells]
     kept = [kept[place] for place in spaced_indices(len(kept), _MOST_LEVELS)]
     most = max(1, _MOST_CELLS // max(1, len(kept)))
     cells = [(f"{axis.name}={axis.text(int(axis.level[found[group][0]]))}", _some(found[group], most), looks[group])
              for group in kept]  # fmt: skip
-    return ShownCells(axis, cells, len(ordered), at)
+    return ShownCells(axis, cells, at)
 
 
 def _some(cells: Sequence[int], most: int) -> list[int]:
