@@ -105,7 +105,7 @@ def _curve(level: Level, values: Values) -> Series:
 
 
 def _is_noisy(y: FloatArray) -> bool:
-    """Return True if a curve goes up and down so often that it hides what is behind it."""
+    """Return True if a curve goes up and down so often that it hides other curves."""
     sound = y[np.isfinite(y)]
     return bool(sound.size and np.abs(np.diff(sound)).sum() > _NOISY * np.ptp(sound) > 0.0)
 

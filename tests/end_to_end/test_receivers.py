@@ -8,6 +8,7 @@ from importlib.util import find_spec
 
 import pytest
 import typst
+from support.patience import PATIENCE
 
 from runner.base.paths import examples_dir
 
@@ -137,7 +138,7 @@ def test_chromium_prints_a_report_with_nothing_cut(exported, cli):
         [browser, "--headless", "--no-sandbox", "--disable-gpu", f"--user-data-dir={folder / 'profile'}",
          "--no-pdf-header-footer", f"--print-to-pdf={folder / 'printed.pdf'}", "--virtual-time-budget=20000",
          (report / "report.html").as_uri()],
-        capture_output=True, check=True, timeout=300,
+        capture_output=True, check=True, timeout=PATIENCE,
     )  # fmt: skip
     text = subprocess.run(
         [program("pdftotext"), "-layout", "printed.pdf", "-"], cwd=folder, capture_output=True, text=True, check=True

@@ -52,7 +52,7 @@ class Series:
 
 
 def shifted(series: Series) -> Series:
-    """Return a series as it is drawn, with its abscissae where its points are seen."""
+    """Return a series with its abscissae at the places where its points are drawn."""
     return series if series.shift is None else replace(series, x=series.x + series.shift, shift=None)
 
 

@@ -155,7 +155,7 @@ def _trace(series: Series, group: int, color: int) -> Json:
 
 
 def _data(series: Series) -> Json:
-    """Return what is saved of a curve besides its points: the places of shifted points, and the ends of its band."""
+    """Return the data of a curve that are saved with its points: places of shifted points, ends of its band."""
     parts = {"x": series.x if series.shift is not None else None, "low": series.low, "high": series.high}
     found = {name: _typed(part) for name, part in parts.items() if part is not None}
     return {"meta": found} if found else {}

@@ -54,5 +54,5 @@ def write_typst(table: Table, caption: str, sources: Sequence[str], width: float
 
 
 def _cells(column: PaperColumn) -> list[str]:
-    """Return the cells of a column, of which none is broken."""
+    """Return the cells of a column, whose spaces break no line."""
     return [cell.with_interval("[{}, {}]").replace(" ", "\u00a0") for cell in column.cells]

@@ -34,7 +34,11 @@ def section(subject: Subject) -> Section:
             f"Share of all repetitions in which the {title(metric)} is at most the value below; a curve that "
             "ends below 1 leaves repetitions that failed or never settled."
         )
-        blocks.append(Curves(caption, panels, columns=min(2, len(panels))))
+        for axis in subject.axes:
+            count = int(group_levels(axis).max()) + 1
+            shown = len(subject.looks(axis))
+            caption += f" {shown} of {count} values of {axis.name} are shown." if shown < count else ""
+        blocks.append(Curves(literal(caption), panels, columns=min(2, len(panels))))
     if not any(is_condition(axis.name) for axis in subject.axes):
         blocks.append(_in_order(subject, metric))
     return Section("Distributions", blocks)

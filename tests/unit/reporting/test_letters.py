@@ -2,6 +2,7 @@
 
 import re
 import tomllib
+from pathlib import Path
 
 import numpy as np
 import pytest
@@ -89,9 +90,7 @@ def test_a_printed_page_cuts_no_table():
 
 def test_the_citation_has_the_version_and_its_date():
     """Fault 15: cited without a year."""
-    root = templates_dir().parents[1]
-    while not (root / "CITATION.cff").exists():
-        root = root.parent
+    root = Path(__file__).parents[3]
     cited = yaml.safe_load((root / "CITATION.cff").read_text())
     version = tomllib.loads((root / "pyproject.toml").read_text())["project"]["version"]
     changes = re.search(rf"^## \[{re.escape(version)}\] - (\S+)", (root / "CHANGELOG.md").read_text(), re.M)

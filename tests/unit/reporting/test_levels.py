@@ -153,7 +153,7 @@ def test_what_is_beyond_every_number_in_more_levels_on_one_side_is_so_in_the_mea
     values[1, 0] = values[2, 1] = values[0, 2] = values[1, 2] = np.inf  # b; a at the other level; both at one level
     overall = compare(level_pairs(sweep, "controller", ())[0], "rms")
     assert overall.differences[:2].tolist() == [np.inf, -np.inf]
-    assert overall.differences[2] == pytest.approx(values[3, 2] - values[2, 2])  # of the level with values alone
+    assert overall.differences[2] == pytest.approx(values[3, 2] - values[2, 2])  # only of the level with values
     assert overall.lost == (1, 1)
     assert str(overall.empty) == "neither has a value in 1 of 16 repetitions, at 1 of 2 levels"
 

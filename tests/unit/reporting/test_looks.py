@@ -105,6 +105,14 @@ def test_a_level_has_one_look_in_every_figure(sweeps):
             assert seen.get(level, look) == look
 
 
+def test_more_levels_than_looks_are_told():
+    axes = {"controller.natural_frequency": list(map(float, range(1, 13)))}
+    many = choose(measurements(axes, {"rms": lambda level: [1.0 + level] * 3}))
+    figure = next(block for block in distributions.section(many).blocks if isinstance(block, Curves))
+    assert f"{MOST_LOOKS} of 12 values of controller.natural_frequency are shown." in figure.caption
+    assert len({series.color for series in figure.panels[0].series}) == MOST_LOOKS
+
+
 def test_looks_differ_in_colour_mark_and_dash():
     for kind in (palette.LIGHT, palette.MARKS, palette.DASHES):
         assert len(set(kind)) == len(kind) == MOST_LOOKS

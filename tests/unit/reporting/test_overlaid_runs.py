@@ -13,7 +13,7 @@ T = np.linspace(0.0, 1.0, 201)
 
 
 def run(error, t=T, joints=("q1",), torque=0.0):
-    """Return what the curves read of a run: a tip error along x, and the torque of each joint."""
+    """Return a run as the curves read it: a tip error along x, and the torque of each joint."""
     values = np.stack([error * np.ones(len(t)), np.zeros(len(t)), np.zeros(len(t))], axis=1)
     return SimpleNamespace(
         t=t,

@@ -217,7 +217,7 @@ def test_a_table_within_a_width_has_small_letters_and_titles_in_lines(width):
     assert body.rstrip().endswith(r"\end{tabular}}")
     assert r"\begin{tabular}{@{}l S" in body
     sound(re.sub(r"^\{.*%\n", "", body.replace(r"\end{tabular}}", r"\end{tabular}").replace("@{}", "")))
-    assert ("tracking error (" in body) == (width > 86.0)  # else the unit is in a line of its own
+    assert ("tracking error (" in body) == (width > 86.0)  # else the unit is in another line
     typst = made.written("typst", width)
     assert "text(8pt, table(" in typst
     cells = re.findall(r'"([^"]*)"', typst.partition("table.hline(stroke")[2])
