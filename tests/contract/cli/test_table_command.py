@@ -142,9 +142,9 @@ def test_a_sweep_that_runs_is_not_started_again(cli, tmp_path):
         (("--format", "typst", "--width", "wide"), "--width: not a width ('wide')."),
         (
             ("--format", "markdown", "--width", "single"),
-            "--width: not for markdown (single). Allowed: --format latex or",
+            "--width: not with markdown (single). Allowed: --format latex or",
         ),
-        (("--width", "single"), "--width: not for the table without a format (single)."),
+        (("--width", "single"), "--width: not with the whole table (single)."),
         (("--format", "latex", "--width", "60"), "--width: the table needs "),
     ],
 )
