@@ -17,12 +17,17 @@ const csv = (rows) => rows.map((row) => row.map(cell).join(",") + "\r\n").join("
 
 function rowsOfCurves(panel, title) {
   const [x, y] = [panel.layout.xaxis, panel.layout.yaxis].map((axis) => readable(axis.title.text));
-  const drawn = panel.traces.filter((trace) => trace.type === "scatter" && numbers(trace.x).some(Number.isFinite));
+  const drawn = panel.traces.filter((trace) => trace.type === "scatter" && trace.hoverinfo !== "skip"
+    && numbers(trace.x).some(Number.isFinite));
   return drawn.flatMap((trace) => {
     const name = panel.traces.find((one) => one.name && one.legendgroup === trace.legendgroup)?.name;
     const heights = numbers(trace.y);
-    const curve = readable(name) + (trace.fill ? " (outline of its band)" : "");
-    return numbers(trace.x).map((value, index) => [title, curve, x, value, y, heights[index]]);
+    const [low, high] = [trace.meta?.low, trace.meta?.high].map((edge) => edge && numbers(edge));
+    return numbers(trace.meta?.x ?? trace.x).map((value, index) => [
+      title, readable(name), x, panel.names_across ? readable(panel.names_across[value] ?? value) : value, y,
+      ...[low ? NaN : heights[index], low?.[index] ?? NaN, low ? heights[index] : NaN, high?.[index] ?? NaN]
+        .map((number) => (Number.isFinite(number) ? number : "")),
+    ]);
   });
 }
 
@@ -54,7 +59,8 @@ function rowsOf(figure) {
   if (figure.classList.contains("maps")) {
     return [["panel", "x axis", "x", "y axis", "y", "quantity", "value"], ...panels.flatMap((one) => rowsOfMap(...one))];
   }
-  return [["panel", "curve", "x axis", "x", "y axis", "y"], ...panels.flatMap((one) => rowsOfCurves(...one))];
+  const names = ["panel", "curve", "x axis", "x", "y axis", "y", "low", "median", "high"];
+  return [names, ...panels.flatMap((one) => rowsOfCurves(...one))];
 }
 
 /* ---- pictures ---- */

@@ -125,6 +125,8 @@ function drawError(context, run, read, { flat }, factor, color) {
   stroke(context, [[x, y], [x + 0.01, y]], color, 8);
 }
 
+const pathColor = (run, ghost, colors) => colors[(run.look ?? (ghost ? 3 : 1)) % colors.length];
+
 function drawMotion(motion) {
   const { canvas, view, runs } = motion;
   const [width, height, ratio] = [canvas.clientWidth, canvas.clientHeight, window.devicePixelRatio || 1];
@@ -141,13 +143,13 @@ function drawMotion(motion) {
   drawFloor(context, motion, seen, grid);
   for (const { run, ghost } of shown) {
     stroke(context, points(run.desired).map(seen.flat), "#8a929c", 1.5, [6, 4]);
-    stroke(context, points(run.path).map(seen.flat), colors[ghost ? 3 : 1], 1.5);
+    stroke(context, points(run.path).map(seen.flat), pathColor(run, ghost, colors), 1.5);
   }
   for (const { run, ghost, read } of shown) {
     context.globalAlpha = ghost ? 0.35 : 1;
     drawBodies(context, run, read, seen, ghost ? ["#8a929c"] : colors);
     context.globalAlpha = 1;
-    drawError(context, run, read, seen, view.error, colors[ghost ? 3 : 1]);
+    drawError(context, run, read, seen, view.error, pathColor(run, ghost, colors));
   }
   const { run, read } = shown[shown.length - 1];
   const labels = [];

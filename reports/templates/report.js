@@ -4,6 +4,9 @@ const darkScreen = window.matchMedia("(prefers-color-scheme: dark)");
 const narrowScreen = window.matchMedia("(max-width: 64rem)");
 let printing = false;
 
+// What a page says where scripts are off.
+for (const told of document.querySelectorAll(".no-script")) told.remove();
+
 const isDark = () => darkScreen.matches && !printing;
 
 // Libraries stand in the page once, compressed.

@@ -133,6 +133,15 @@ class Run(store.Run):
         ]
         return "".join(parts)
 
+    def _repr_png_(self) -> bytes | None:
+        """Return the picture of the page as PNG, which a notebook exported as LaTeX or PDF shows."""
+        from runner.api.signals import Signals, png_of
+
+        try:
+            return png_of(Signals(super().trace(), self.units), "error")
+        except RunnerError:
+            return None
+
     def _ended(self) -> str:
         return f"{self.status}, {self.repetitions} repetition{'s' if self.repetitions != 1 else ''}"
 

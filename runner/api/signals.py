@@ -17,7 +17,7 @@ from runner.base.errors import RunnerError, unknown
 from runner.base.machine import equal_up_to_rounding, read_machine, this_machine
 from runner.base.quantities import label_with_unit
 from runner.reporting.charts.scales import curves_in_readable_units
-from runner.reporting.charts.static import as_figure, draw
+from runner.reporting.charts.static import as_figure, as_png, draw
 from runner.reporting.document import Curves, Panel, Series
 from runner.reporting.metric_titles import capital
 from runner.store.run import units_of
@@ -139,6 +139,11 @@ def figure_of(signals: Signals, name: str) -> Figure:
 def svg_of(signals: Signals, name: str) -> str:
     """Return the figure of a signal as SVG; see `figure_of`."""
     return draw(_curves(signals, name))
+
+
+def png_of(signals: Signals, name: str) -> bytes:
+    """Return the figure of a signal as PNG; see `figure_of`."""
+    return as_png(figure_of(signals, name))
 
 
 def _curves(signals: Signals, name: str) -> Curves:

@@ -15,6 +15,7 @@ ROUNDING = 1e-12
 SUPERSCRIPT = str.maketrans("-0123456789", "⁻⁰¹²³⁴⁵⁶⁷⁸⁹")
 ROUNDED = "0 (rounding)"
 _EXPONENT = re.compile(r"(?<![\w.])(\d+(?:\.\d+)?)e[+-]?\d+(?!\w)")
+_LABEL_UNIT = re.compile(r"\([^()]*\)$")
 _UNITS = {"1": "", "N^2 m^2 s": "N² m² s", "N^2 s": "N² s", "m/s^2": "m/s²"}
 # Smallest size, factor and name of each unit; below the last size, the base unit is used with a power of ten.
 _SMALLER = {
@@ -106,6 +107,11 @@ def format_duration(seconds: float) -> str:
 def label_with_unit(name: str, unit: str) -> str:
     """Return a name with its unit, as on the axis of a figure."""
     return name if unit == "1" else f"{name} ({unit_text(unit)})"
+
+
+def bind_label(text: str) -> str:
+    """Return a label in which no line break parts the factors of the unit at its end, such as N and m."""
+    return _LABEL_UNIT.sub(lambda found: found[0].replace(" ", "\u00a0"), text)
 
 
 def digits_between(low: float, high: float) -> int:

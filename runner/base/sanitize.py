@@ -14,7 +14,7 @@ LINE = 2000
 LINES = 50
 """Largest number of lines of a message."""
 _OVERRIDES = ("LRE", "RLE", "LRO", "RLO", "PDF", "LRI", "RLI", "FSI", "PDI")
-_SPACE = re.compile(r"\s+")
+_SPACE = re.compile(r"[^\S\u00a0]+")  # not a no-break space, as in a unit
 
 
 def escaped(text: str) -> str:

@@ -1,6 +1,7 @@
 """Argument parser, argument types, and the options that mean the same in every command."""
 
 import argparse
+import math
 import os
 import sys
 from collections.abc import Callable, Iterable, Sequence
@@ -242,3 +243,26 @@ class Parser(argparse.ArgumentParser):
         text = message.removeprefix("argument ")
         usage = " ".join(self.format_usage().split()).replace("usage", "Usage", 1)
         raise UsageError(f"{text}{'' if text.endswith(('.', '?')) else '.'} {usage}")
+
+
+WIDTHS = "single (88 mm), double (180 mm) or millimetres"
+"""Meaning of `--width`, in every command."""
+
+_COLUMNS = {"single": 88.0, "double": 180.0}  # mm
+_NARROWEST, _WIDEST = 60.0, 400.0  # mm
+
+
+def millimetres(text: str) -> float:
+    """Return the width that `--width` names, in mm.
+
+    Raises:
+        RunnerError: If it is none, or outside the allowed range.
+    """
+    try:
+        width = _COLUMNS.get(text) or float(text.removesuffix("mm"))
+    except ValueError:
+        width = math.nan
+    if not _NARROWEST <= width <= _WIDEST:
+        widths = f"single (88 mm), double (180 mm), or {_NARROWEST:g} to {_WIDEST:g} in mm"
+        raise RunnerError(f"--width: not a width ('{text}'). Allowed: {widths}.")
+    return width

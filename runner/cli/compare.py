@@ -110,9 +110,11 @@ def _compare(options: Namespace) -> None:
 
 
 def _json_text(rows: Sequence[Mapping[str, Any]]) -> str:
-    """Return rows as JSON; an infinite value, which JSON cannot represent, becomes null."""
-    infinite = (math.inf, -math.inf)
-    finite = [{key: None if value in infinite else value for key, value in row.items()} for row in rows]
+    """Return rows as JSON; a value without a number, which JSON cannot represent, becomes null."""
+    finite = [
+        {key: None if isinstance(value, float) and not math.isfinite(value) else value for key, value in row.items()}
+        for row in rows
+    ]
     return json.dumps(finite, indent=2, allow_nan=False)
 
 

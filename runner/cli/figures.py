@@ -3,7 +3,6 @@
 Example: runner figures latest --width double
 """
 
-import math
 import sys
 from argparse import Namespace
 from collections.abc import Mapping, Sequence
@@ -13,7 +12,7 @@ from typing import TYPE_CHECKING
 from runner.base.errors import RunnerError, unknown
 from runner.base.paths import STUDY_FILE
 from runner.base.sanitize import one_line
-from runner.cli.arguments import Parser, Stored
+from runner.cli.arguments import WIDTHS, Parser, Stored, millimetres
 from runner.config.compose.files import outputs_dir
 from runner.study.names import study_names
 
@@ -23,8 +22,6 @@ if TYPE_CHECKING:
     from runner.reporting.export.figures import Figure
     from runner.store import Run
 
-_COLUMNS = {"single": 88.0, "double": 180.0}  # mm
-_NARROWEST, _WIDEST = 60.0, 400.0  # mm
 _MOTIONS = (".gif", ".mp4")
 
 
@@ -42,7 +39,7 @@ def add_arguments(parser: Parser) -> None:
         "--width",
         default="single",
         metavar="W",
-        help="single (88 mm), double (180 mm) or millimetres (default: single)",
+        help=f"{WIDTHS} (default: single)",
     )
     parser.add_argument("--only", metavar="NAME", help="figures whose names begin so (default: all)")
     parser.add_argument("--motion", type=Path, metavar="FILE", help="write the first motion to FILE: .gif or .mp4")
@@ -50,13 +47,13 @@ def add_arguments(parser: Parser) -> None:
 
 def run(options: Namespace) -> int:
     """Write the figures; print their folder as the last line."""
-    width = _millimetres(options.width)
+    width = millimetres(options.width)
     if options.motion is not None and options.motion.suffix.lower() not in _MOTIONS:
         raise RunnerError(unknown("ending", options.motion.suffix, _MOTIONS, f"--motion {options.motion}"))
     if options.motion is not None and options.output is not None:
         raise RunnerError(f"--output: not with --motion ({options.output}), which names its own file.")
     from runner.reporting.charts.sheet import column
-    from runner.reporting.export.figures import choose_figures, figures_of, write_figures
+    from runner.reporting.export.figures import choose_figures, figures_of, tell_widths, write_figures
     from runner.store.kinds import report_place
 
     document, report = _document(options.folders)
@@ -65,6 +62,8 @@ def run(options: Namespace) -> int:
         print(_write_motion(figures, options.motion, column(width)))
         return 0
     folder = options.output or report_place(report.parent.parent, f"{report.name}/figures")
+    for text in tell_widths(figures, column(width)):
+        print(f"runner: {text}", file=sys.stderr)
     for name in write_figures(figures, folder, column(width)):
         print(name)
     print(folder)
@@ -74,7 +73,7 @@ def run(options: Namespace) -> int:
 def _write_motion(figures: "Mapping[str, Figure]", path: Path, sheet: "Sheet") -> Path:
     """Write the first motion; print what it shows and which format it has."""
     from runner.reporting.document import Playback
-    from runner.reporting.export.motion import write_motion
+    from runner.reporting.export.motion import speed_told, write_motion
 
     motion = next((figure for figure in figures.values() if isinstance(figure, Playback)), None)
     if motion is None:
@@ -82,21 +81,12 @@ def _write_motion(figures: "Mapping[str, Figure]", path: Path, sheet: "Sheet") -
     for who, run in zip(("the arm", "the grey arm"), (motion, *motion.others[-1:]), strict=False):
         if run.name:
             print(one_line(f"runner: {who} is {run.name}"), file=sys.stderr)
+    if told := speed_told(motion):
+        print(f"runner: {told}", file=sys.stderr)
     written = write_motion(motion, path, sheet)
     if written != path:
         print("runner: no ffmpeg is installed, so that the motion is a GIF", file=sys.stderr)
     return written
-
-
-def _millimetres(text: str) -> float:
-    try:
-        width = _COLUMNS.get(text) or float(text.removesuffix("mm"))
-    except ValueError:
-        width = math.nan
-    if not _NARROWEST <= width <= _WIDEST:
-        widths = f"single (88 mm), double (180 mm), or {_NARROWEST:g} to {_WIDEST:g} in mm"
-        raise RunnerError(f"--width: not a width ('{text}'). Allowed: {widths}.")
-    return width
 
 
 def _study_of(path: Path) -> tuple[str, Path] | None:

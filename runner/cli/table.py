@@ -11,13 +11,14 @@ from typing import TYPE_CHECKING
 
 from runner.base.errors import RunnerError, unknown
 from runner.base.sanitize import one_line
-from runner.cli.arguments import Parser, Stored, put
+from runner.cli.arguments import WIDTHS, Parser, Stored, millimetres, put
 
 if TYPE_CHECKING:
     from runner.sweeps.measurements import Measurements
 
 _ENDINGS = {".csv": "csv", ".parquet": "parquet", ".md": "markdown", ".tex": "latex", ".typ": "typst"}
-_FOR_PAPER = ("markdown", "latex", "typst")
+_OF_WIDTH = ("latex", "typst")
+_FOR_PAPER = ("markdown", *_OF_WIDTH)
 FORMATS = tuple(_ENDINGS.values())
 
 
@@ -32,17 +33,19 @@ def add_arguments(parser: Parser) -> None:
         where="only cells with this value, swept or in the config; repeat for more",
         output="file to write (default: standard output)",
     )
+    parser.add_argument("--width", metavar="W", help=f"latex and typst: {WIDTHS} that the table fits (default: any)")
 
 
 def run(options: Namespace) -> int:
     """Write the whole table into the sweep's folder, and print the folder; or the table that the options choose."""
     chosen = _format(options)
+    width = _width(options.width, chosen)
     from runner import store
     from runner.store.kinds import kind_of
     from runner.sweeps.measurements import limit_sweep, measure_sweep, split_where
 
     if kind_of(options.folder) == "run":
-        return _of_run(options, chosen)
+        return _of_run(options, chosen, width)
     sweep = store.open_sweep(options.folder)
     swept, others = split_where(sweep, options.where)
     measurements = measure_sweep(limit_sweep(sweep, others))
@@ -52,7 +55,7 @@ def run(options: Namespace) -> int:
         from runner.reporting.export.paper_table import of_sweep
 
         table = of_sweep(measurements, sweep.command, options.metrics, options.by, swept)
-        put(table.written(chosen), options.output)
+        put(table.written(chosen, width), options.output)
         return 0
     from runner.reporting.export.pooling import as_csv, as_parquet, selection
 
@@ -71,6 +74,15 @@ def _format(options: Namespace) -> str:
     if chosen == "parquet" and options.output is None:
         raise RunnerError("--format: Parquet cannot be printed. Add --output FILE.")
     return chosen
+
+
+def _width(text: str | None, chosen: str) -> float | None:
+    """Return the width that the table fits, in mm; None for any."""
+    if text is not None and chosen not in _OF_WIDTH:
+        raise RunnerError(
+            f"--width: not with {chosen or 'the whole table'} ({text}). Allowed: --format latex or typst."
+        )
+    return None if text is None else millimetres(text)
 
 
 def _whole(folder: Path, measurements: "Measurements") -> int:
@@ -92,7 +104,7 @@ def _whole(folder: Path, measurements: "Measurements") -> int:
     return 0
 
 
-def _of_run(options: Namespace, chosen: str) -> int:
+def _of_run(options: Namespace, chosen: str, width: float | None) -> int:
     """Print or write the table of a run, one row per metric; without options, as Markdown with the folder."""
     from runner import store
 
@@ -104,7 +116,7 @@ def _of_run(options: Namespace, chosen: str) -> int:
     if chosen in ("", *_FOR_PAPER):
         from runner.reporting.export.paper_table import of_run
 
-        put(of_run(run, options.metrics).written(chosen or "markdown"), options.output)
+        put(of_run(run, options.metrics).written(chosen or "markdown", width), options.output)
         if not chosen:
             print(options.folder)
         return 0

@@ -96,7 +96,7 @@ class Asked:
     @property
     def is_lost(self) -> bool:
         """True if no draw has a value in either."""
-        return self.comparison.lost == (self.comparison.n, self.comparison.n)
+        return not self.comparison.n
 
     @property
     def is_tested(self) -> bool:
@@ -119,7 +119,7 @@ class Asked:
         return self._differs_at_most(max(_EQUAL, self.comparison.rounding))
 
     def _differs_at_most(self, share: float) -> bool:
-        return bool(np.abs(self.comparison.differences).max() <= max(ROUNDING, share * self._larger))
+        return bool(np.abs(self.comparison.differences).max(initial=0.0) <= max(ROUNDING, share * self._larger))
 
     @property
     def _larger(self) -> float:
@@ -217,6 +217,8 @@ class Answer(Asked):
     def cells(self) -> list[str]:
         """The cells of a table: HEADER, then the word."""
         found, shown = self.comparison, self.printed
+        if self.is_lost:
+            return ["–", "–", "0", "–", "–", self.word]
         minus = "-" if found.difference < 0 else ""
         return [
             f"{minus}{shown.amount}" if np.isfinite(found.difference) else "beyond every number",
@@ -231,6 +233,8 @@ class Answer(Asked):
     def plain_cells(self) -> list[Cell]:
         """The cells of a table in SI units: HEADER, then the word."""
         found = self.comparison
+        if self.is_lost:
+            return [Number(None), Number(None), "0", "-", "-", self.word]
         return [
             Number(found.difference),
             "exact" if found.exact else Number(None, *(self.interval or ())),
@@ -247,6 +251,8 @@ class Answer(Asked):
         minus = "-" if found.difference < 0 else "+"
         if self.limit:
             return [shown.values[0], "–", f"not compared: {self.limit}"]
+        if self.is_lost:
+            return [shown.values[0], "–", self.word]
         difference = "0" if self._differs_at_most(_EQUAL) else f"{minus}{shown.amount}"
         ends = f" ({shown.ends})" if shown.ends and difference != "0" else ""
         return [shown.values[0], f"{difference}{ends}", self.verdict]
@@ -277,18 +283,19 @@ class Answer(Asked):
         if self.is_lost:
             return f"{first} and {second} have no value in any draw."
         if self.equal:
-            return f"{both} are equal up to rounding{self._rounding()}{'' if found.exact else self._pairs()}."
+            pairs = "" if found.exact else f" ({found.n} pairs)"
+            return f"{both} are equal up to rounding{self._rounding()}{pairs}{self._empty()}."
         if not self.sign:
             if self.word == "no difference shown":
                 return f"no difference is shown between {both}, difference {self._evidence()}.{self.power}"
-            return f"{both}, {self.word}{', nothing is drawn' if found.exact else ''}.{self.power}"
+            return f"{both}, {self.word}{', nothing is drawn' if found.exact else ''}{self._empty()}.{self.power}"
         one, other = (second, first) if self.sign < 0 else (first, second)
         small, large = shown.values[::-1] if self.sign < 0 else shown.values
         share = f"{shown.share} smaller" if shown.share else "smaller"
         if found.exact:
             return (
                 f"{share} with {one} ({small}) than with {other} ({large}), exactly: nothing is drawn, "
-                f"{self._error()}{price}."
+                f"{self._error()}{self._empty()}{price}."
             )
         return f"{share} with {one} than with {other} ({large}): by {self._evidence()}{price}."
 
@@ -347,7 +354,7 @@ class Answer(Asked):
         below the least one that counts can be shown.
         """
         found = self.comparison
-        if self.sign or found.exact or self.limit or self.equal or (self.p_value is not None and self.p_value < ALPHA):
+        if self.sign or not self.is_tested or self.equal or (self.p_value is not None and self.p_value < ALPHA):
             return ""
         if self.interval is None:
             return f" At least {fewest_pairs(self.level)} pairs are needed."
@@ -381,8 +388,9 @@ class Answer(Asked):
         share = self.comparison.rounding
         return f", which changes it by {number(100.0 * share, 2)} %" if share > SENSITIVE else ""
 
-    def _pairs(self) -> str:
-        return f" ({self.comparison.n} pairs)"
+    def _empty(self) -> str:
+        """Return in how many repetitions neither has a value, to follow a phrase; empty if there are none."""
+        return f", {self.comparison.empty}" if self.comparison.empty.repetitions else ""
 
     def _error(self) -> str:
         error, (factor, unit) = self.comparison.error, self.scale
@@ -398,6 +406,7 @@ class Answer(Asked):
         minus = "-" if not self.sign and found.difference < 0 else ""
         parts = [self._range(ends), f"{found.n} pairs"]
         parts += [f"no value in {a} and {b} of {found.n} draws" for a, b in [found.lost] if a or b]
+        parts += [str(found.empty)]
         parts += ["integration error unknown"] if self.sign and found.error is None else []
         return f"{minus}{self.printed.amount} in pairs ({', '.join(filter(None, parts))})"
 

@@ -118,6 +118,7 @@ def keep_described(answers: Sequence[Answer], whole: bool = True) -> list[Answer
 
 def describes(pooled: Answer, cells: Sequence[Answer]) -> bool:
     """Return True if a pooled answer describes the answers in its cells; see `keep_described`."""
+    cells = [one for one in cells if not one.is_lost]
     if not cells:
         return True
     signs = {one.sign for one in cells} - {0}
@@ -134,6 +135,8 @@ def _are_alike(medians: Sequence[float]) -> bool:
 def _relative(one: Answer) -> float:
     found = one.comparison
     largest = max(map(abs, found.medians))
+    if one.is_lost:
+        return 0.0
     if not np.isfinite(largest):
         return np.inf if found.difference else 0.0
     return float(abs(found.difference) / largest) if largest > ROUNDING else 0.0

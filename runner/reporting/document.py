@@ -6,7 +6,7 @@ become markup. A literal dollar sign is written twice. `§2.1` is a link to that
 "table 2.1" are links if the report contains them.
 """
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field
 from typing import ClassVar, Literal
 
@@ -271,6 +271,8 @@ class Playback:
         target: Desired position of the tip at each instant, shape (T, 3), in m.
         joints: Name and position of each joint at each instant, shape (T, 3), in m.
         others: Motions of further runs, which can be chosen or shown as a ghost.
+        look: Index into the palette of its path; None for that of an arm, or of a ghost.
+        draw: Returns the still picture for a width, in inches, with letters of one size; None to scale the still.
     """
 
     block: ClassVar[str] = "playback"
@@ -287,6 +289,8 @@ class Playback:
     target: FloatArray = field(default_factory=lambda: np.zeros((0, 3)))
     joints: Mapping[str, FloatArray] = field(default_factory=dict)
     others: Sequence["Playback"] = ()
+    look: int | None = None
+    draw: Callable[[float], str] | None = field(default=None, repr=False, compare=False)
 
 
 @dataclass(frozen=True)

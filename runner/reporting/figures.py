@@ -2,14 +2,15 @@
 
 from collections.abc import Sequence
 from dataclasses import replace
+from functools import partial
 
 import numpy as np
 
 from runner.base.arrays import FloatArray
 from runner.base.quantities import quantity
-from runner.reporting.charts.arm import arm_motion, moving_arm
+from runner.reporting.charts.arm import WIDE, arm_motion, moving_arm
 from runner.reporting.charts.figure import spaced_indices
-from runner.reporting.document import Block, Cover, Curves, Origin, Panel, Playback, Series
+from runner.reporting.document import Cover, Curves, Origin, Panel, Playback, Series
 from runner.reporting.playback import joint_places, playback_bodies
 from runner.store import Calibration, Run
 
@@ -139,15 +140,24 @@ def playback(run: Run, caption: str, until: float | None = None, frames: int = 1
         tip=tip[shown],
         target=desired[shown],
         joints=joint_places(model, q[shown]),
+        draw=partial(still_motion, run, until) if has_still else None,
     )
 
 
-def still_motion(run: Run, until: float | None = None, has_words: bool = True) -> str:
-    """Return the motion of a run as a still picture, up to a time in s; without legend and labels if it is small."""
+def still_motion(run: Run, until: float | None = None, width: float = WIDE, has_words: bool = True) -> str:
+    """Return the motion of a run as a still picture.
+
+    Args:
+        run: The run.
+        until: End of the part shown, in s; None shows it all.
+        width: Its width, in inches; see `arm_motion`.
+        has_words: Whether it has a legend and labels, which a small one leaves out.
+    """
     t, q, tip, desired = _motion(run, until)
     shown = spaced_indices(len(t), _STILLS)
     path = desired if np.ptp(desired, axis=0).any() else np.vstack([tip[0], desired[0]])
-    return arm_motion(run.model, q[shown], t[shown].tolist(), tip, path, desired[-1], has_words=has_words)
+    return arm_motion(run.model, q[shown], t[shown].tolist(), tip, path, desired[-1],
+                      has_words=has_words, width=width)  # fmt: skip
 
 
 def _motion(run: Run, until: float | None) -> tuple[FloatArray, ...]:
@@ -156,34 +166,6 @@ def _motion(run: Run, until: float | None) -> tuple[FloatArray, ...]:
     columns = [values[rows] for values in (run.t, run.joints("q"), run.vector("tip"), run.vector("desired"))]
     finite = np.isfinite(np.hstack(columns[1:3])).all(axis=1)
     return tuple(values[finite] for values in columns)
-
-
-def overlaid(runs: Sequence[Run], names: Sequence[str]) -> list[Block]:
-    """Return the tip error and the torque of each joint, runs in the same axes, and their motions; repetition 0.
-
-    Args:
-        runs: The runs, up to eight, so that colours tell them apart.
-        names: Name of each.
-    """
-    shown = list(zip(runs, names, strict=True))
-    error = [Series(name, run.t, np.linalg.norm(run.vector("error"), axis=1), color=place)
-             for place, (run, name) in enumerate(shown)]  # fmt: skip
-    panels = [Panel("Tip error", "time (s)", "tip error (m)", error)]
-    joints = min(len(run.provenance["joints"]) for run in runs)
-    units = {run.units[f"tau{joint + 1}"] for run in runs for joint in range(joints)}
-    for joint in range(joints) if len(units) == 1 else ():
-        (unit,) = units
-        what = "Force" if unit == "N" else "Torque"
-        torques = [Series(name, run.t, run.joints("tau")[:, joint], color=place)
-                   for place, (run, name) in enumerate(shown)]  # fmt: skip
-        label = f"{what.lower()} of {runs[0].provenance['joints'][joint]}"
-        panels.append(Panel(f"{what}{label[len(what) :]}", "time (s)", f"{label} ({unit})", torques))
-    caption = "Distance of the tip from its desired position, and torques; repetition 0."
-    first, *others = [
-        replace(playback(run, "", has_still=not place), name=name) for place, (run, name) in enumerate(shown)
-    ]
-    told = "The motions of repetition 0." if others else "The motion of repetition 0."
-    return [Curves(caption, panels, origin=origin(runs[0])), replace(first, caption=told, others=others)]
 
 
 def cover(run: Run, caption: str, until: float | None = None) -> Cover:

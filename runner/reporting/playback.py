@@ -59,6 +59,7 @@ def _motion(run: Playback) -> Json:
     return {
         "name": plain(run.name),
         "ends": plain(run.ends),
+        "look": run.look,
         "times": pack(run.times[chosen]),
         "shapes": [
             {"ends": pack(ends[chosen]), "balls": ends.shape[1] == 1, "radius": radius, "color": body.color}

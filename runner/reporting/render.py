@@ -86,6 +86,7 @@ def render_html(document: Document) -> str:
         for kinds in ((Curves, Maps, RunList), RunList, Playback)
     )
     library = _plotly() if has_plots else ""
+    first = next((block for block in outline.blocks(document) if isinstance(block, Curves | Maps)), None)
     left_out = (() if has_plots else _OF_PLOTS) + (() if has_plots or has_playback else ("motion",))
     return (
         html_environment()
@@ -97,6 +98,7 @@ def render_html(document: Document) -> str:
             plotly_spec=plotly_spec,
             run_list_spec=run_list_spec,
             data_uri=data_uri,
+            first_still=lambda block: static.draw(first) if first is not None and block is first else "",
             plots=_Pack(),
             pictures=_Pack(),
             playback_spec=playback_spec,

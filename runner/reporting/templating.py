@@ -19,7 +19,9 @@ from runner.reporting.verdicts import WORDS
 _BEFORE_UNIT = re.compile(
     r"(?<=[\d⁰¹²³⁴⁵⁶⁷⁸⁹]) (?=(?:%|[mµ]?m|[mµ]?s|m/s²?|N²?|rad(?:/s)?|J|kg|Hz|°|pairs?)(?![\w/]))", re.ASCII
 )
-_INSIDE_UNIT = re.compile(r"(?<=[\d⁰¹²³⁴⁵⁶⁷⁸⁹]\u00a0N) (?=m\b)|(?<=\u00a0N²) (?=m²)|(?<=m²) (?=s\b)")
+_INSIDE_UNIT = re.compile(
+    r"(?<=[\d⁰¹²³⁴⁵⁶⁷⁸⁹]\u00a0N) (?=m\b)|(?<=\(N) (?=m\b)|(?<=[\u00a0(]N²) (?=m²)|(?<=m²) (?=s\b)"
+)
 _PART_OF_NAME = re.compile(r"(?<=[_=/])|(?<=\.)(?!\d)")
 _SIZE = re.compile(r'viewBox="[-\d.]+ [-\d.]+ ([\d.]+) ([\d.]+)"')
 

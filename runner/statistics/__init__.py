@@ -2,19 +2,30 @@
 
 from runner.statistics.effects import Effect, EffectAnalysis, axis_effects
 from runner.statistics.interval import SMALLEST_SAMPLE, Interval, median_interval, median_intervals
-from runner.statistics.paired import Comparison, compare_paired, fewest_pairs, holm, holm_levels, subtract
+from runner.statistics.paired import (
+    Comparison,
+    Empty,
+    compare_paired,
+    fewest_pairs,
+    holm,
+    holm_levels,
+    is_empty,
+    subtract,
+)
 
 __all__ = [
     "SMALLEST_SAMPLE",
     "Comparison",
     "Effect",
     "EffectAnalysis",
+    "Empty",
     "Interval",
     "axis_effects",
     "compare_paired",
     "fewest_pairs",
     "holm",
     "holm_levels",
+    "is_empty",
     "median_interval",
     "median_intervals",
     "subtract",

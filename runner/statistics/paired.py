@@ -5,8 +5,10 @@ from collections.abc import Sequence
 from dataclasses import dataclass, field
 from functools import cached_property, lru_cache
 from statistics import NormalDist
+from typing import NamedTuple
 
 import numpy as np
+from numpy.typing import NDArray
 
 from runner.base.arrays import FloatArray
 from runner.statistics.interval import SMALLEST_SAMPLE
@@ -96,17 +98,43 @@ def _lower_tail(n: int) -> FloatArray:
     return np.ldexp(np.cumsum(ways), -n)
 
 
+class Empty(NamedTuple):
+    """Repetitions in which neither has a value: they are in no pair, and count nothing.
+
+    Attributes:
+        repetitions: Number of these.
+        of: Number of all repetitions that both have.
+        levels: Number of levels, compared by their mean, at which there are such repetitions.
+        of_levels: Number of all these levels.
+    """
+
+    repetitions: int = 0
+    of: int = 0
+    levels: int = 0
+    of_levels: int = 1
+
+    def __str__(self) -> str:
+        """Return them as a phrase, such as "neither has a value in 24 of 36 repetitions, at 2 of 3 levels"."""
+        at = f", at {self.levels} of {self.of_levels} levels" if self.of_levels > 1 else ""
+        return f"neither has a value in {self.repetitions} of {self.of} repetitions{at}" if self.repetitions else ""
+
+
+NONE_EMPTY = Empty()
+"""No such repetitions."""
+
+
 @dataclass(frozen=True, eq=False)
 class Comparison:
-    """Difference of b and a on the same seeds.
+    """Difference of b and a on the same seeds, in the pairs in which either has a value; there may be none.
 
     Attributes:
         a: Values of the first, one for each pair, shape (n,); infinity is beyond every number.
         b: Values of the second, in the same order.
-        differences: b - a; zero where both are beyond every number.
+        differences: b - a.
         error: Typical error of the plants in one difference; None where it is not known.
         rounding: Largest change of a value through rounding, as a fraction; 0 where it is not known.
         exact: True if nothing is drawn, so that one pair gives the difference without doubt.
+        empty: Repetitions without any value, which are in no pair.
     """
 
     a: FloatArray = field(repr=False)
@@ -115,6 +143,7 @@ class Comparison:
     error: float | None = None
     rounding: float = 0.0
     exact: bool = False
+    empty: Empty = NONE_EMPTY
 
     @property
     def n(self) -> int:
@@ -123,7 +152,9 @@ class Comparison:
 
     @property
     def medians(self) -> tuple[float, float]:
-        """Medians of both."""
+        """Medians of both; infinite without pairs."""
+        if not self.n:
+            return math.inf, math.inf
         return float(np.median(self.a)), float(np.median(self.b))
 
     @property
@@ -133,13 +164,13 @@ class Comparison:
 
     @property
     def difference(self) -> float:
-        """The Hodges-Lehmann estimate of b - a."""
-        return self._ranks.estimate
+        """The Hodges-Lehmann estimate of b - a; NaN without pairs."""
+        return self._ranks.estimate if self.n else math.nan
 
     @property
     def effect(self) -> float:
-        """Matched-pairs rank-biserial correlation, -1 (b smaller in every pair) to 1 (b larger in every pair)."""
-        return self._ranks.effect
+        """Matched-pairs rank-biserial correlation, -1 (b smaller in every pair) to 1 (b larger); NaN without pairs."""
+        return self._ranks.effect if self.n else math.nan
 
     @property
     def p_value(self) -> float | None:
@@ -203,8 +234,8 @@ def compare_paired(a: FloatArray, b: FloatArray) -> Comparison:
     """Compare two configs run on the same seeds.
 
     Args:
-        a: Values of the first config, shape (n,), one for each repetition; infinity is beyond every number, and two
-            of these are equal. It needs one pair at least.
+        a: Values of the first config, shape (n,), one for each repetition; infinity is beyond every number. Where both
+            are, there is no pair. It needs one repetition at least.
         b: Values of the second, in the same order.
 
     Raises:
@@ -212,7 +243,14 @@ def compare_paired(a: FloatArray, b: FloatArray) -> Comparison:
     """
     if a.shape != b.shape or a.ndim != 1 or not a.size:
         raise ValueError(f"pairs need two samples of one length, at least 1; found shapes {a.shape} and {b.shape}")
-    return Comparison(a, b, subtract(b, a))
+    kept = ~is_empty(a, b)
+    empty = int(a.size - kept.sum())
+    return Comparison(a[kept], b[kept], b[kept] - a[kept], empty=Empty(empty, a.size, int(empty > 0)))
+
+
+def is_empty(a: FloatArray, b: FloatArray) -> NDArray[np.bool_]:
+    """Return where both values are beyond every number."""
+    return np.isinf(a) & np.isinf(b)
 
 
 def subtract(b: FloatArray, a: FloatArray) -> FloatArray:

@@ -229,8 +229,14 @@ def _gather(sweep: Sweep) -> Gathered:
                 gathered.add_run(*found)
                 progress.step()
     except StoreError as error:
-        if isinstance(error, DamagedError) or not (left := find_status(sweep).left):
+        status = find_status(sweep)
+        if isinstance(error, DamagedError) or not (left := status.left):
             raise
+        if status.at_work:
+            raise StoreError(
+                f"{sweep.folder} is running, {status.done} of {status.done + left} cells are stored; "
+                "wait, or watch it with: runner status"
+            ) from error
         raise StoreError(
             f"{left} of {len(sweep.hashes)} cells of {sweep.folder} are not stored; continue with: {sweep.continuation}"
         ) from error

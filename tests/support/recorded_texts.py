@@ -106,7 +106,7 @@ def _lines(name: str, value: Any, depth: int) -> Iterator[str]:
         yield f"{head}{type(value).__name__}"
         for each in fields(value):
             own = getattr(value, each.name)
-            if each.name not in _OF_TODAY and not _is_default(each, own):
+            if each.repr and each.name not in _OF_TODAY and not _is_default(each, own):
                 yield from _lines(f"{each.name}:", own, depth + 1)
     elif isinstance(value, Mapping):
         yield from ([head.rstrip()] if name else [])

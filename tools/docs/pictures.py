@@ -17,7 +17,7 @@ from runner.reporting.charts.canvas import GREY, INK, drawing
 from runner.reporting.charts.sheet import column
 from runner.reporting.document import Playback
 from runner.reporting.export.motion import write_motion
-from runner.reporting.figures import overlaid
+from runner.reporting.overlaid_runs import Level, overlaid
 from runner.studies.thesis.diagrams.block_diagram import ControlGraph, Edge, Node, block_diagram, control_graph
 from tools.docs.friction_picture import friction
 from tools.docs.robot_pictures import robots
@@ -132,7 +132,8 @@ def motion(path: Path) -> None:
             )
             for name, law in own.items()
         }
-        (both,) = (block for block in overlaid(list(runs.values()), list(runs)) if isinstance(block, Playback))
+        levels = [Level(name, [run], look) for look, (name, run) in enumerate(runs.items())]
+        (both,) = (block for block in overlaid(levels) if isinstance(block, Playback))
         write_motion(both, path, column(80.0))
 
 

@@ -1,6 +1,7 @@
 """Pictures of an arm in motion, still and animated."""
 
 from collections.abc import Iterable, Sequence
+from typing import Any
 
 import numpy as np
 from matplotlib.axes import Axes
@@ -14,6 +15,10 @@ from runner.robots.model import RobotModel
 
 _ARM, _PATH, _GOAL = palette.LIGHT[:3]
 _SHADES = LinearSegmentedColormap.from_list("instants", ["#b9cfe8", palette.LIGHT[0], "#0c2b52"])
+WIDE = 5.4
+"""Width of a still picture, in inches, from which on its legend is on the right."""
+_SHARE, _WITHIN = 3.8 / 5.4, 0.94  # of a still: height over width, and what labels leave of a narrow one
+_ENTRY = 85.0  # pt of a legend's entry
 _WIDTH, _HEIGHT, _MARGIN = 420.0, 300.0, 18.0
 _FASTEST, _SLOWEST = 3.0, 5.0  # s; what moves longer by itself keeps readers from reading
 
@@ -28,6 +33,7 @@ def arm_motion(
     goal: FloatArray | None = None,
     camera: Camera | None = None,
     has_words: bool = True,
+    width: float = WIDE,
 ) -> Figure:
     """Draw an arm at several instants in one picture, light at first and dark at last.
 
@@ -40,10 +46,11 @@ def arm_motion(
         goal: Goal of the tip, shape (3,), in m.
         camera: The view.
         has_words: Whether it has a legend and labels.
+        width: Width, in inches: without the legend, which is on the right, or of a narrower one with it below.
     """
     camera = camera or Camera(32.0, 18.0)
     chains = np.array([[*model.frame_poses(row, model.joint_names)[:, :3, 3], model.tip_position(row)] for row in q])
-    figure, axes = scene(5.4, 3.8)
+    figure, axes = scene(width if width >= WIDE else _WITHIN * width, _SHARE * width)
     points = np.vstack([chains.reshape(-1, 3), *(p for p in (path, desired) if p is not None)])
     floor = min(0.0, float(points[:, 2].min())) - 0.05 * model.reach
     _draw_floor(axes, camera, points, floor, has_words)
@@ -63,7 +70,10 @@ def arm_motion(
     if goal is not None:
         axes.plot(*camera.project(goal), "*", ms=11, mfc=_GOAL, mec="white", mew=0.7, zorder=6, label="goal", ls="none")
     if has_words and axes.get_legend_handles_labels()[0]:
-        axes.legend(loc="center left", bbox_to_anchor=(1.0, 0.5), frameon=False, fontsize=7.5, handlelength=1.8)
+        columns = max(1, int(72.0 * width / _ENTRY))
+        beside: Any = {"loc": "center left", "bbox_to_anchor": (1.0, 0.5)}
+        below: Any = {"loc": "upper center", "bbox_to_anchor": (0.5, 0.0), "ncols": columns, "columnspacing": 1.0}
+        axes.legend(**(beside if width >= WIDE else below), frameon=False, fontsize=7.5, handlelength=1.8)
     return figure
 
 

@@ -25,12 +25,16 @@ class Series:
         x: Abscissae, shape (T,).
         y: Ordinates, shape (T,); NaN breaks the line.
         style: Line, dashed line, dotted line, single points, or points joined by a line.
-        low: Lower edge of a shaded band around the curve, shape (T,), or None.
-        high: Upper edge of the band, shape (T,), or None.
+        low: Lower edge of a shaded band around the curve, or lower ends of upright bars at single points, shape (T,),
+            or None.
+        high: Upper edge of the band, or upper ends, shape (T,), or None.
         color: Index into the palette; None takes the next one. Curves that belong together share it.
         hints: Text at the pointer for each point, or none.
         runs: Hash of the run behind each point, one for each, or none.
         label: Text next to its last point, instead of a legend entry.
+        level: True if it is a level of an axis: its mark and dash are those of its colour.
+        shift: What is added to the abscissae only where they are drawn, so that points at one place are seen, shape
+            (T,); None for nothing.
     """
 
     name: str
@@ -43,6 +47,13 @@ class Series:
     hints: Sequence[str] = ()
     runs: Sequence[str] = ()
     label: str = ""
+    level: bool = False
+    shift: FloatArray | None = None
+
+
+def shifted(series: Series) -> Series:
+    """Return a series with its abscissae at the places where its points are drawn."""
+    return series if series.shift is None else replace(series, x=series.x + series.shift, shift=None)
 
 
 def upright(series: Series) -> bool:
@@ -54,7 +65,8 @@ def upright(series: Series) -> bool:
 class Panel:
     """One pair of axes with its curves; labels carry the unit, as in "tip error (m)".
 
-    With `x_names` the abscissae are places 0, 1, ... with these names below them.
+    With `x_names` the abscissae are places 0, 1, ... with these names below them. Without `has_legend` its title or the
+    caption names its curves.
     """
 
     title: str
@@ -66,12 +78,24 @@ class Panel:
     x_range: tuple[float, float] | None = None
     y_range: tuple[float, float] | None = None
     x_names: Sequence[str] = ()
+    has_legend: bool = True
+
+
+NOTHING = "never"
+"""Word in a panel without any value, as in a cell of a map."""
+
+
+def is_empty(panel: Panel) -> bool:
+    """Return True if the named curves of a panel have places, but no value at any of them."""
+    named = [series for series in panel.series if (series.name or series.label) and series.x.size]
+    return bool(named) and not any(np.isfinite(series.y).any() for series in named)
 
 
 def shares_legend(panels: Sequence[Panel]) -> bool:
     """Return True if one legend serves several panels: their named curves have the same names, styles and colours."""
     entries = [
-        [(series.name, series.style, series.color) for series in panel.series if series.name] for panel in panels
+        [(series.name, series.style, series.color) for series in panel.series if series.name and panel.has_legend]
+        for panel in panels
     ]
     return len(panels) > 1 and bool(entries[0]) and all(each == entries[0] for each in entries)
 
@@ -171,7 +195,8 @@ def thin(series: Series, points: int = POINTS) -> Series:
     kept = _kept(_channels(series), points)
     low, high = (None if edge is None else edge[kept] for edge in (series.low, series.high))
     hints, runs = ([texts[index] for index in kept] if texts else () for texts in (series.hints, series.runs))
-    return replace(series, x=series.x[kept], y=series.y[kept], low=low, high=high, hints=hints, runs=runs)
+    shift = None if series.shift is None else series.shift[kept]
+    return replace(series, x=series.x[kept], y=series.y[kept], low=low, high=high, hints=hints, runs=runs, shift=shift)
 
 
 def envelope(series: Series, samples: int) -> Series:
@@ -226,9 +251,17 @@ def usable(limits: tuple[float, float] | None, log: bool) -> bool:
     return not log or min(limits) > 0
 
 
+def bars(series: Series) -> tuple[FloatArray, FloatArray] | None:
+    """Return the upright bars of single points as x and y, parted by NaN, or None where they have none."""
+    if series.style != "points" or series.low is None or series.high is None:
+        return None
+    gap = np.full(series.x.size, np.nan)
+    return np.repeat(series.x, 3), np.column_stack([series.low, series.high, gap]).ravel()
+
+
 def band(series: Series) -> tuple[FloatArray, FloatArray] | None:
     """Return the outline of a series' shaded band as x and y, polygons parted by NaN, or None where it has no band."""
-    if series.low is None or series.high is None:
+    if series.low is None or series.high is None or series.style == "points":
         return None
     finite = np.isfinite(series.x) & np.isfinite(series.low) & np.isfinite(series.high)
     x: list[FloatArray] = []

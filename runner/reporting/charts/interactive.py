@@ -4,35 +4,45 @@ import base64
 import html
 import math
 import re
-import textwrap
 from collections.abc import Sequence
 from typing import Any
 
 import numpy as np
 
 from runner.base.arrays import FloatArray
+from runner.base.quantities import bind_label
 from runner.base.sanitize import plain
 from runner.reporting.charts import palette, scales
 from runner.reporting.charts.figure import (
+    NOTHING,
     Curves,
     Map,
     Maps,
     Panel,
     Series,
     band,
+    bars,
     coarsen,
+    is_empty,
     shares_legend,
+    shifted,
     thin,
     upright,
     usable,
 )
+from runner.reporting.charts.letters import wrap
 
 Json = dict[str, Any]
 
 _SYMBOLS = ("diamond", "square")  # of points beyond the palette
+_MARKS = {"o": "circle", "s": "square", "^": "triangle-up", "D": "diamond", "v": "triangle-down", "P": "cross",
+          "X": "x", "<": "triangle-left"}  # fmt: skip
 _MODES = {"line": "lines", "dashed": "lines", "dotted": "lines", "points": "markers", "points_line": "lines+markers"}
 _DASHES = {"dashed": "dash", "dotted": "dot"}
-_LEGEND_WIDTH, _TITLE_WIDTH, _UPRIGHT_WIDTH = 40, 45, 26
+_LEGEND_WIDTH, _TITLE_WIDTH, _UPRIGHT_WIDTH = 230.0, 260.0, 150.0  # px that a page has for them at least
+_LETTERS = 12.0  # px
+_NEVER = {"text": NOTHING, "x": 0.5, "y": 0.5, "xref": "paper", "yref": "paper", "showarrow": False}
+_WIDTH = 1.7  # px of a line
 _POINTS = 500  # of a curve on a page: two for each pixel of a panel
 _MOST_NAMES = 16
 _FEW_DECADES = 2
@@ -67,7 +77,7 @@ def _panel(panel: Panel) -> Json:
     traces: list[Json] = []
     colors: list[int] = []
     for group, series, color in zip(_groups(panel.series), panel.series, chosen, strict=True):
-        drawn = [*_band(series, group), _trace(series, group, palette.rounds(color)) | _hover(panel, series)]
+        drawn = [*_band(series, group), _trace(series, group, color) | _hover(panel, series)]
         traces += drawn
         colors += [color] * len(drawn)
     edges = [edge for series in panel.series for edge in (series.low, series.high) if edge is not None]
@@ -76,10 +86,12 @@ def _panel(panel: Panel) -> Json:
     layout = {
         "xaxis": across | _named_places(panel.x_names) if panel.x_names else across,
         "yaxis": _axis(panel.y_label, panel.y_log, panel.y_range, heights, _UPRIGHT_WIDTH),
-        "showlegend": any(plain(series.name).strip() for series in panel.series),
+        **({"annotations": [_NEVER]} if is_empty(panel) else {}),
+        "showlegend": panel.has_legend and any(plain(series.name).strip() for series in panel.series),
         "hovermode": "x unified" if all(map(_compared, panel.series)) else "closest",
     }
-    return {"traces": traces, "colors": colors, "layout": layout}
+    names = {"names_across": list(map(neutral, panel.x_names))} if panel.x_names else {}
+    return {"traces": traces, "colors": colors, "layout": layout, **names}
 
 
 def _groups(curves: Sequence[Series]) -> list[int]:
@@ -103,8 +115,14 @@ def _named_places(names: Sequence[str]) -> Json:
     }
 
 
-def _trace(series: Series, group: int, rounds: int) -> Json:
+def _trace(series: Series, group: int, color: int) -> Json:
+    rounds, look = palette.rounds(color), color % len(palette.MARKS)
+    symbol = _MARKS[palette.MARKS[look]] if series.level else _SYMBOLS[min(rounds, len(_SYMBOLS)) - 1] if rounds else ""
+    dash = _DASHES.get(series.style, "solid")
+    if series.level and series.style not in _DASHES and palette.DASHES[look]:
+        dash = ",".join(f"{_WIDTH * length:.3g}px" for length in palette.DASHES[look])
     thinned = coarsen(thin(series, _POINTS))
+    drawn = shifted(thinned)
     name = plain(series.name).strip()
     pointed: Json = {"zorder": 1} if series.style in _DASHES else {}  # so that it is seen on a curve without breaks
     if series.label:
@@ -126,13 +144,21 @@ def _trace(series: Series, group: int, rounds: int) -> Json:
         "name": _lines(name, _LEGEND_WIDTH),
         "showlegend": bool(name),
         "legendgroup": str(group),
-        "line": {"dash": _DASHES.get(series.style, "solid"), "width": 1.7},
-        "marker": {"size": 6} | ({"symbol": _SYMBOLS[min(rounds, len(_SYMBOLS)) - 1]} if rounds else {}),
+        "line": {"dash": dash, "width": _WIDTH},
+        "marker": {"size": 6} | ({"symbol": symbol} if symbol else {}),
         # Plotly has no legend entry for a curve without points: a gap is a point.
-        "x": _typed(thinned.x if thinned.x.size else _GAP),
-        "y": _typed(thinned.y if thinned.x.size else _GAP),
+        "x": _typed(drawn.x if drawn.x.size else _GAP),
+        "y": _typed(drawn.y if drawn.x.size else _GAP),
         **pointed,
+        **_data(thinned),
     }
+
+
+def _data(series: Series) -> Json:
+    """Return the data of a curve that are saved with its points: places of shifted points, ends of its band."""
+    parts = {"x": series.x if series.shift is not None else None, "low": series.low, "high": series.high}
+    found = {name: _typed(part) for name, part in parts.items() if part is not None}
+    return {"meta": found} if found else {}
 
 
 def _hover(panel: Panel, series: Series) -> Json:
@@ -152,18 +178,20 @@ def _unit(label: str) -> str:
 
 
 def _band(series: Series, group: int) -> list[Json]:
-    outline = band(thin(series, _POINTS))
+    thinned = shifted(thin(series, _POINTS))
+    upright_bars = bars(thinned)
+    outline = upright_bars or band(thinned)
     if outline is None:
         return []
     return [
         {
             "type": "scatter",
             "mode": "lines",
-            "fill": "toself",
+            **({} if upright_bars else {"fill": "toself"}),
             "hoverinfo": "skip",
             "showlegend": False,
             "legendgroup": str(group),
-            "line": {"width": 0},
+            "line": {"width": _WIDTH if upright_bars else 0},
             "x": _typed(outline[0]),
             "y": _typed(outline[1]),
         }
@@ -171,7 +199,7 @@ def _band(series: Series, group: int) -> list[Json]:
 
 
 def _axis(
-    label: str, log: bool, limits: tuple[float, float] | None, values: list[FloatArray], width: int = _TITLE_WIDTH
+    label: str, log: bool, limits: tuple[float, float] | None, values: list[FloatArray], width: float = _TITLE_WIDTH
 ) -> Json:
     title = {"text": _lines(label, width)}
     axis: Json = {"title": title, "type": "log" if log else "linear", "hoverformat": ".5~g"}
@@ -197,9 +225,9 @@ def _marks(shown: tuple[float, float] | None, values: list[FloatArray]) -> Json:
     return {"tickmode": "array", "tickvals": places, "ticktext": [write(place) for place in places]}
 
 
-def _lines(text: str, characters: int) -> str:
-    """Return a string broken into lines, which Plotly does not do by itself."""
-    return "<br>".join(neutral(line) for line in textwrap.wrap(plain(text), characters))
+def _lines(text: str, width: float) -> str:
+    """Return a string broken into lines of a width, in px, which Plotly does not do by itself."""
+    return "<br>".join(neutral(line) for line in wrap(bind_label(plain(text).strip()), width, _LETTERS))
 
 
 def _compared(series: Series) -> bool:

@@ -14,6 +14,7 @@ from matplotlib.axis import Axis
 from matplotlib.figure import Figure
 from matplotlib.text import Text
 
+from runner.base.quantities import bind_label
 from runner.base.sanitize import plain
 from runner.schema.units import is_number
 
@@ -198,7 +199,7 @@ def literal(label: Text, text: str) -> None:
 
 def wrap_text(text: str, characters: float) -> str:
     """Return a string in lines of at most this many characters."""
-    return "\n".join(textwrap.wrap(plain(text).strip(), max(10, int(characters))))
+    return "\n".join(textwrap.wrap(bind_label(plain(text).strip()), max(10, int(characters))))
 
 
 def cut(text: str, characters: float) -> str:

@@ -5,7 +5,7 @@ import itertools
 import math
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
-from typing import Literal
+from typing import Any, Literal
 
 import matplotlib as mpl
 import numpy as np
@@ -19,7 +19,22 @@ from matplotlib.ticker import FuncFormatter, MaxNLocator, NullFormatter
 from runner.base.arrays import FloatArray
 from runner.base.sanitize import plain
 from runner.reporting.charts import palette, scales
-from runner.reporting.charts.figure import Curves, Map, Maps, Panel, Series, shares_legend, thin, upright, usable
+from runner.reporting.charts.figure import (
+    NOTHING,
+    Curves,
+    Map,
+    Maps,
+    Panel,
+    Series,
+    band,
+    bars,
+    is_empty,
+    shares_legend,
+    shifted,
+    thin,
+    upright,
+    usable,
+)
 from runner.reporting.charts.sheet import (
     REPORT,
     Names,
@@ -36,7 +51,7 @@ from runner.reporting.charts.sheet import (
 # all the curves.
 _LEFT, _RIGHT, _BOTTOM, _BARE = 0.64, 0.12, 0.42, 0.24  # the last one below an axis without a label
 _HEIGHTS, _LOWER = {1: 1.25, 2: 1.2}, 0.95  # of the axes by number of columns, and in more
-_ROWS = {2: 1.05, 3: 0.8, 4: 0.64}  # the same by number of rows, and in more
+_ROWS = {0: 9.0, 2: 1.05, 3: 0.8, 4: 0.64, 5: 0.5, 7: 0.42}  # the same by number of rows, and in more
 _ABOVE = 0.15  # by which a label next to an axis of curves may be longer than it
 _HANDLE, _GAP = 0.42, 0.12
 _LEAST = 1.55  # width of a panel
@@ -49,8 +64,6 @@ _COLORS = "viridis"
 _BRIGHT = 0.6  # share of the scale of colours from which black is read more easily than white
 Corner = Literal["upper left", "lower left"]
 _MARKS = ("o", "D", "s")
-COLOR_MARKS = ("o", "s", "^", "D", "v", "P", "X", "<")
-"""Mark of each colour of the palette, on a sheet that has them."""
 _MARKED = 7  # marks on a curve
 _LINES = {"line": "-", "dashed": "--", "dotted": ":", "points": "none", "points_line": "-"}
 
@@ -117,9 +130,14 @@ class _Shown(Figure):
     """A figure that a notebook shows although pyplot, which may not be used there, does not know it."""
 
     def _repr_png_(self) -> bytes:
-        stream = io.BytesIO()
-        self.savefig(stream, format="png", dpi=150)
-        return stream.getvalue()
+        return as_png(self)
+
+
+def as_png(figure: Figure) -> bytes:
+    """Return a figure as PNG."""
+    stream = io.BytesIO()
+    figure.savefig(stream, format="png", dpi=150)
+    return stream.getvalue()
 
 
 def _figure(figure: Curves | Maps, sheet: Sheet) -> Figure:
@@ -130,13 +148,19 @@ def _curves(curves: Curves, sheet: Sheet, kind: type[Figure] = Figure) -> Figure
     columns = sheet.beside(curves.columns, len(curves.panels), _LEAST)
     panels = curves.panels
     count, width = math.ceil(len(panels) / columns), sheet.width / columns
-    height = sheet.scale * min(_HEIGHTS.get(columns, _LOWER), _ROWS.get(min(count, max(_ROWS)), 9.0))
+    height = sheet.scale * min(
+        _HEIGHTS.get(columns, _LOWER), _ROWS[max((rows for rows in _ROWS if rows <= count), default=0)]
+    )
     shared = shares_legend(panels)
     lines = max((_beside(panel, height, sheet).count("\n") for panel in panels), default=0)
     left, right = _LEFT * sheet.scale + lines * sheet.line, _RIGHT * sheet.scale
-    frames = [_frame(panel, () if shared else panel.series, sheet, width - left - right, height) for panel in panels]
+    frames = [
+        _frame(panel, () if shared or not panel.has_legend else panel.series, sheet, width - left - right, height)
+        for panel in panels
+    ]
     rows = [frames[start : start + columns] for start in range(0, len(frames), columns)]
-    if shared and len({panel.x_label for panel in panels}) == 1:
+    alike = shared or not all(panel.has_legend for panel in panels)
+    if alike and len({panel.x_label for panel in panels}) == 1:
         # One label below the last panel of each column.
         rows[:-1] = [_bare(row, below) for row, below in itertools.pairwise(rows)]
     foot = _frame(panels[0], panels[0].series, sheet, sheet.width - left - right, height) if shared else None
@@ -177,7 +201,10 @@ def _maps(maps: Maps, sheet: Sheet) -> Figure:
         _draw_legend(axes, frame, handles, "upper left", (0, -(frame.bottom - 0.02) / frame.height))
     bottom = 1 - (max((frame.top for frame in rows[0]), default=0.0) + height) / total if rows else 0.0
     bar = figure.add_axes(((room + 0.1) / sheet.width, bottom, 0.1 / sheet.width, height / total))
-    figure.colorbar(ScalarMappable(colors, _COLORS), cax=bar).set_ticks(places, labels=marks)
+    scale = figure.colorbar(ScalarMappable(colors, _COLORS), cax=bar)
+    scale.set_ticks(places, labels=marks)
+    if scale.solids is not None:
+        scale.solids.set(rasterized=False, edgecolor="face")  # vectors without seams
     literal(bar.yaxis.label, wrap_text(maps.value_label, height / sheet.character))
     bar.grid(False)
     return figure
@@ -244,7 +271,9 @@ def _draw_panel(axes: Axes, frame: _Frame) -> list[Line2D]:
     axes.margins(x=0.02)
     chosen = palette.indices([series.color for series in panel.series])
     handles = [
-        _draw_series(axes, thin(series, int(_POINTS_PER_INCH * frame.width)), color, sheet, len(set(chosen)) > 1)
+        _draw_series(
+            axes, shifted(thin(series, int(_POINTS_PER_INCH * frame.width))), color, sheet, len(set(chosen)) > 1
+        )
         for series, color in zip(panel.series, chosen, strict=True)
     ]
     if usable(panel.x_range, panel.x_log):
@@ -257,6 +286,8 @@ def _draw_panel(axes: Axes, frame: _Frame) -> list[Line2D]:
     else:
         whole = all((series.x[np.isfinite(series.x)] % 1.0 == 0.0).all() for series in panel.series)
         _mark(axes, "x", 5, whole)
+    if is_empty(panel):
+        literal(axes.text(0.5, 0.5, "", ha="center", va="center", transform=axes.transAxes), NOTHING)
     _mark(axes, "y", max(3, int(frame.height / (0.22 * sheet.scale))))
     return handles
 
@@ -280,24 +311,32 @@ def _formatter(write: scales.Mark) -> FuncFormatter:
 
 def _draw_series(axes: Axes, series: Series, index: int, sheet: Sheet, several: bool) -> Line2D:
     color = palette.color(index)
-    if series.low is not None and series.high is not None:
+    if band(series) is not None and series.low is not None and series.high is not None:
         # A pale colour and no transparency, which journals refuse; thin edges show through another band.
         red, green, blue = (1.0 - _PALE * (1.0 - part) for part in to_rgb(color))
         axes.fill_between(series.x, series.low, series.high, color=(red, green, blue), linewidth=0)
         for edge in (series.low, series.high):
             axes.plot(series.x, edge, color=color, linewidth=0.3, zorder=1.8)
-    marked = sheet.marked and several
-    mark = COLOR_MARKS[index % len(COLOR_MARKS)] if marked else _MARKS[min(palette.rounds(index), len(_MARKS) - 1)]
+    if (upright_bars := bars(series)) is not None:
+        axes.plot(*upright_bars, color=color)
+    marked = (sheet.marked or series.level) and several
+    look = index % len(palette.MARKS)
+    mark = palette.MARKS[look] if marked else _MARKS[min(palette.rounds(index), len(_MARKS) - 1)]
     pointed = series.style in ("points", "points_line")
     places = axes.transScale.transform(np.column_stack([series.x, series.y]))  # NaN without a logarithm
     whole = np.isfinite(series.y).all() and np.isfinite(places).all(axis=1).any()
     marker = mark if pointed or (marked and series.name and whole) else ""
     # Marks of curves that are close to each other have different places.
     every = None if pointed else ((index % 8 + 1) / (8 * _MARKED), 1 / _MARKED)
-    # Broken lines are in front of others, so that neither hides the other.
-    order = 2.1 if series.style in ("dashed", "dotted") else 2.0
-    (line,) = axes.plot(series.x, series.y, linestyle=_LINES[series.style], marker=marker, color=color, zorder=order,
-                       markevery=every)  # fmt: skip
+    # Broken lines are in front of others, so that neither hides the other; a white edge parts a mark from its curve.
+    dashes = palette.DASHES[look] if series.level and not pointed else ()
+    order = 2.1 if dashes or series.style in ("dashed", "dotted") else 2.0
+    if marker and not pointed:
+        parted: dict[str, Any] = {"markeredgecolor": "white", "markeredgewidth": 0.5, "markersize": 4.0}
+    else:
+        parted = {}
+    (line,) = axes.plot(series.x, series.y, linestyle=(0, dashes) if dashes else _LINES[series.style], marker=marker,
+                       color=color, zorder=order, markevery=every, **parted)  # fmt: skip
     if series.label and series.x.size:
         end = (float(series.x[-1]), float(series.y[-1]))
         side = -1 if upright(series) else 1  # next to an upright line, above the end of a level one

@@ -25,20 +25,24 @@ def difference_panel(columns: Sequence[tuple[str, Answer]], across: str) -> Pane
     ends = [(*(one.interval or (np.nan, np.nan)), one.comparison.difference) for one in answers]
     low, high, middle = np.where(np.isfinite(ends), ends, np.nan).T
     x = np.arange(len(answers), dtype=float)
-    dots = np.concatenate([_dots(place, answer) for place, answer in enumerate(answers)], axis=1)
+    values = [_dots(answer) for answer in answers]
+    shift = np.concatenate([_spread(len(some)) for some in values])
+    hints = [f"{one.place}: {one.word}" for one in answers]
     series = [
-        Series("", np.array([-0.5, len(answers) - 0.5]), np.zeros(2), "dotted", color=1),
-        Series("a pair", dots[0], dots[1], "points", color=2),
-        Series("interval", np.repeat(x, 3), np.column_stack([low, high, np.full(len(x), np.nan)]).ravel(), color=0),
-        Series("difference", x, middle, "points", color=0, hints=[f"{one.place}: {one.word}" for one in answers]),
+        Series("", x[[0, -1]], np.zeros(2), "dotted", color=1, shift=np.array([-0.5, 0.5])),
+        Series("a pair", np.repeat(x, [*map(len, values)]), np.concatenate(values), "points", color=2, shift=shift),
+        Series("difference, interval", x, middle, "points", low, high, 0, hints),
     ]
     label = label_with_unit(f"difference in {title(answers[0].metric)}", answers[0].unit)
     return Panel(capital(title(answers[0].metric)), across, label, series, x_names=[name for name, _ in columns])
 
 
-def _dots(place: int, answer: Answer) -> FloatArray:
-    """Return the dots of the pairs, spread evenly over the column in their order, shape (2, n)."""
+def _dots(answer: Answer) -> FloatArray:
+    """Return the differences of the pairs that are drawn, shape (n,)."""
     values = answer.comparison.differences
-    values = values[np.isfinite(values)][:_MOST_DOTS]
-    across = np.linspace(-1.0, 1.0, len(values)) if len(values) > 1 else np.zeros(len(values))
-    return np.stack([place + _WIDTH * across, values])
+    return values[np.isfinite(values)][:_MOST_DOTS]
+
+
+def _spread(count: int) -> FloatArray:
+    """Return places for some dots, spread evenly over a column in their order, relative to its middle, shape (n,)."""
+    return _WIDTH * np.linspace(-1.0, 1.0, count) if count > 1 else np.zeros(count)

@@ -14,7 +14,7 @@ from runner.base.arrays import FloatArray
 from runner.base.dotted_keys import split_override
 from runner.base.errors import RunnerError
 from runner.base.sanitize import few
-from runner.statistics import Comparison, subtract
+from runner.statistics import Comparison, Empty, is_empty, subtract
 from runner.store.axes import find_axis, group_cells, number_rows
 from runner.sweeps.differing import value_text
 from runner.sweeps.measurements import Measurements
@@ -90,8 +90,9 @@ def compare(pairs: Pairs, metric: str) -> Comparison | None:
     """Return the difference of the second cells from the first in a metric; None if no repetition is in both.
 
     Each draw, that is a repetition of a seed, counts once, with the mean over the pairs of cells: cells of one seed
-    share its draws, so they are not further evidence. If nothing is drawn, only the first draw counts and the
-    comparison is exact. Of more than MOST_PAIRS draws the same random selection is always taken.
+    share its draws, so they are not further evidence. A repetition without a value in either counts nothing. If nothing
+    is drawn, only the first draw counts and the comparison is exact. Of more than MOST_PAIRS draws the same random
+    selection is always taken.
 
     Args:
         pairs: The cells.
@@ -100,20 +101,24 @@ def compare(pairs: Pairs, metric: str) -> Comparison | None:
     a, b = pairs.a, pairs.b
     copies = bool(a.copies[pairs.of_a].all() and b.copies[pairs.of_b].all())
     first, second, draws = _entries(pairs, a.values[metric], b.values[metric], 1 if copies else None)
-    both = ~np.isnan(first) & ~np.isnan(second)
-    if not both.any():
+    present = ~np.isnan(first) & ~np.isnan(second)
+    if not present.any():
         return None
+    empty = present & is_empty(first, second)
+    both = present & ~empty
+    levels = int(empty.reshape(len(pairs), -1).any(axis=1).sum())
+    left_out = Empty(int(empty.sum()), int(present.sum()), levels, len(pairs))
     kept, draw = np.unique(draws[both], return_inverse=True)
-    differences = subtract(second[both], first[both])
+    differences = second[both] - first[both]
     if copies:
-        chosen = np.zeros(1, dtype=np.intp)
+        chosen = np.arange(min(1, len(kept)))
     elif len(kept) > MOST_PAIRS:
         chosen = np.sort(np.random.default_rng(0).choice(len(kept), MOST_PAIRS, replace=False))
     else:
         chosen = np.arange(len(kept))
     one, other, by_draw = (_mean_by(draw, values)[chosen] for values in (first[both], second[both], differences))
     error = _error(pairs, metric) if metric in a.finer and metric in b.finer else None
-    return Comparison(one, other, by_draw, error, _largest_rounding(pairs, metric), copies)
+    return Comparison(one, other, by_draw, error, _largest_rounding(pairs, metric), copies, left_out)
 
 
 def _largest_rounding(pairs: Pairs, metric: str) -> float:
@@ -128,14 +133,15 @@ def _error(pairs: Pairs, metric: str) -> float | None:
     width = min(a.finer[metric].shape[1], b.finer[metric].shape[1])
     first, second, draws = _entries(pairs, a.values[metric], b.values[metric], width)
     finer_first, finer_second, _ = _entries(pairs, a.finer[metric], b.finer[metric], width)
-    here = ~np.isnan(first) & ~np.isnan(second)
+    here = ~np.isnan(first) & ~np.isnan(second) & ~is_empty(first, second)
     known = ~np.isnan(finer_first) & ~np.isnan(finer_second)
     whole = here & ~np.isin(draws, draws[here & ~known])  # draws whose pairs are all known
     if not whole.any():
         return None
     draw = np.unique(draws[whole], return_inverse=True)[1]
     own = _mean_by(draw, subtract(second[whole], first[whole]))
-    finer = _mean_by(draw, subtract(finer_second[whole], finer_first[whole]))
+    failed = is_empty(finer_first, finer_second)[whole]  # on a finer step, which leaves no number of the difference
+    finer = _mean_by(draw, np.where(failed, np.inf, subtract(finer_second[whole], finer_first[whole])))
     return float(np.median(np.abs(subtract(own, finer))))
 
 

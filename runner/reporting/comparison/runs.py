@@ -9,9 +9,9 @@ from runner.reporting.comparison.differences import ConfigDifferences, find_diff
 from runner.reporting.comparison.pairs import match
 from runner.reporting.comparison.sweeps import compare_runs, letter
 from runner.reporting.document import Block, Document, Notice, Section, Table
-from runner.reporting.figures import overlaid
 from runner.reporting.markup import literal
 from runner.reporting.metric_titles import title, whole_metrics
+from runner.reporting.overlaid_runs import Level, overlaid
 from runner.reporting.run_report import config_blocks, provenance, run_blocks, run_name
 from runner.reporting.sentences import sentences, short_table
 from runner.reporting.spec_blocks import spec_of_several
@@ -83,7 +83,8 @@ def _metrics(runs: Sequence[Run], names: Sequence[str]) -> Table:
 
 
 def _curves(runs: Sequence[Run], names: Sequence[str]) -> list[Block]:
-    blocks = overlaid(runs[:_MOST_CURVES], names[:_MOST_CURVES])
+    blocks = overlaid([Level(name, [run], place) for place, (run, name) in enumerate(zip(runs, names, strict=True))]
+                      [:_MOST_CURVES])  # fmt: skip
     if len(runs) > _MOST_CURVES:
         blocks.append(Notice("warning", f"{len(runs) - _MOST_CURVES} runs are not drawn", "The first ones are drawn."))
     return blocks

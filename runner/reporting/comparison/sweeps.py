@@ -272,11 +272,11 @@ def _relative(pairs: Pairs, metric: str) -> FloatArray:
 
 
 def _median_differences(pairs: Pairs, metric: str) -> FloatArray:
-    """Return the median of the differences of each pair of cells, shape (n,); NaN if no repetition is in both."""
+    """Return the median of the differences of each pair of cells, shape (n,); NaN if no repetition has a value."""
     a, b = pairs.a.values[metric], pairs.b.values[metric]
     width = min(a.shape[1], b.shape[1])
     first, second = a[pairs.of_a, :width], b[pairs.of_b, :width]
     with np.errstate(invalid="ignore"), warnings.catch_warnings():
         warnings.simplefilter("ignore", RuntimeWarning)
-        found: FloatArray = np.nanmedian(np.where(first == second, 0.0, second - first), axis=1)
+        found: FloatArray = np.nanmedian(second - first, axis=1)  # NaN where neither has a value
     return found

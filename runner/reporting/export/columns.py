@@ -6,15 +6,14 @@ from collections.abc import Sequence
 from typing import NamedTuple
 
 from runner.base.quantities import ROUNDING, SUPERSCRIPT, unit_text
-from runner.base.sanitize import one_line, plain
+from runner.base.sanitize import plain
 from runner.reporting.table import Cell, Number, Table, fit_unit
-from runner.reporting.templating import quote_typst
 
 _SMALLEST, _LARGEST = 1e-2, 1e5  # outside of these the head of a column has a power of ten
 _DIGITS = 3  # of a number without interval
 _MOST_DIGITS = 6
 BEYOND, MISSING = "∞", "–"
-_MARKDOWN = re.compile(r"([\\`*{}\[\]#|~$!])|(?<![^\W_])(_)|(_)(?![^\W_])")  # an underscore within a word is itself
+_MARKDOWN = re.compile(r"([\\`*{}|~$!])|(?<![^\W_])(_)|(_)(?![^\W_])")  # an underscore within a word is itself
 
 
 class Unit(NamedTuple):
@@ -29,9 +28,9 @@ class Unit(NamedTuple):
     power: int = 0
 
     def __str__(self) -> str:
-        """Return the unit as read, such as "10⁻⁶ N m"; an empty string for 1."""
+        """Return the unit as read and never broken, such as "10⁻⁶ N m"; an empty string for 1."""
         power = f"10{str(self.power).translate(SUPERSCRIPT)}" if self.power else ""
-        return f"{power} {unit_text(self.name)}".strip()
+        return f"{power} {unit_text(self.name)}".strip().replace(" ", "\u00a0")
 
 
 class Written(NamedTuple):
@@ -49,9 +48,9 @@ class Written(NamedTuple):
     high: str = ""
     unit: Unit | None = None
 
-    def __str__(self) -> str:
-        """Return the cell with its interval, such as "4.1 [3.9, 4.4]"."""
-        return f"{self.text} [{self.low}, {self.high}]" if self.low else self.text
+    def with_interval(self, form: str) -> str:
+        """Return the cell with its interval, such as "4.1 [3.9, 4.4]" in the form "[{}, {}]"."""
+        return f"{self.text} {form.format(self.low, self.high)}" if self.low else self.text
 
 
 class PaperColumn(NamedTuple):
@@ -78,7 +77,7 @@ class PaperColumn(NamedTuple):
     def head(self) -> str:
         """Title and unit, such as "error (mm)"."""
         unit = "" if self.unit is None else str(self.unit)
-        untitled = "median [95 % interval]" if self.has_intervals else "median"
+        untitled = "median, 95 % interval" if self.has_intervals else "median"
         return f"{self.title} ({unit})" if unit else self.title or untitled
 
 
@@ -149,41 +148,26 @@ def _fixed(value: float, places: int) -> str:
     return text.removeprefix("-") if float(text) == 0.0 else text
 
 
+# pandoc reads a bracket behind a backslash as the beginning of a formula.
+_ENTITIES = {"&": "&amp;", "#": "&#35;", "<": "&lt;", ">": "&gt;", "[": "&#91;", "]": "&#93;"}
+
+
 def write_markdown(table: Table) -> str:
     """Return a table in GitHub's Markdown."""
     columns = lay_out(table)
-    lines = [[escape_markdown(text) for text in line] for line in _lines(columns)]
+    lines = [[escape_markdown(text) for text in line] for line in _lines(columns, "({} to {})")]
     marks = ["---:" if each.kind == "number" else "---" for each in columns]
     return "\n".join("| " + " | ".join(line) + " |" for line in [lines[0], marks, *lines[1:]])
 
 
 def escape_markdown(text: str) -> str:
     """Return a string in which Markdown finds no markup."""
-    safe = plain(text).replace("&", "&amp;").replace("<", "&lt;").replace(">", "&gt;")
+    safe = plain(text)
+    for letter, entity in _ENTITIES.items():
+        safe = safe.replace(letter, entity)
     return _MARKDOWN.sub(lambda found: f"\\{found[0]}", safe)
 
 
-def write_typst(table: Table, caption: str, sources: Sequence[str]) -> str:
-    """Return a table as a Typst figure, to be included, with comments on its origin."""
-    columns = lay_out(table)
-    head, *rows = [", ".join(map(quote_typst, line)) for line in _lines(columns)]
-    sides = ", ".join("right" if each.kind == "number" else "left" for each in columns)
-    return "\n".join(
-        [
-            *(f"// {one_line(source)}" for source in sources),
-            "#figure(",
-            f"  caption: {quote_typst(caption)},",
-            "  table(",
-            f"    columns: {len(columns)}, align: ({sides}), stroke: none,",
-            f"    table.hline(), table.header({head}), table.hline(stroke: 0.5pt),",
-            *(f"    {row}," for row in rows),
-            "    table.hline(),",
-            "  ),",
-            ")",
-            "",
-        ]
-    )
-
-
-def _lines(columns: Sequence[PaperColumn]) -> list[list[str]]:
-    return [[each.head for each in columns], *map(list, zip(*(map(str, each.cells) for each in columns), strict=True))]
+def _lines(columns: Sequence[PaperColumn], interval: str) -> list[list[str]]:
+    cells = ([cell.with_interval(interval) for cell in each.cells] for each in columns)
+    return [[each.head for each in columns], *map(list, zip(*cells, strict=True))]

@@ -1,6 +1,7 @@
 """Figures of a report as separate files: SVG and PDF at column width, points as CSV, captions without markup."""
 
 import itertools
+import math
 import re
 import tempfile
 from collections.abc import Iterator, Mapping, Sequence
@@ -18,11 +19,13 @@ from runner.reporting.charts.sheet import Sheet
 from runner.reporting.consistency import make_consistent
 from runner.reporting.document import Curves, Document, Maps, Picture, Playback
 from runner.reporting.markup import spans
+from runner.reporting.metric_titles import capital
 from runner.reporting.outline import blocks, numbered_place
 from runner.store.atomic import write_atomically
 
 _WIDTH, _HEIGHT = re.compile(r'\bwidth="([\d.]+)pt"'), re.compile(r'\bheight="([\d.]+)pt"')
-_POINTS = 72.0  # in an inch
+_POINTS, _MM = 72.0, 25.4  # in an inch
+_LEAST = 7.0 / 7.5  # of a drawing, whose smallest letters are of 7.5 pt
 _LONGEST = 100  # letters of a file's name
 _WORD = re.compile("[a-z0-9]+")
 _OF_JOINT = re.compile(r"\b(torque|force) of \S+(?= \()")
@@ -96,7 +99,7 @@ def _lettered(panels: Sequence[Axes]) -> tuple[list[Axes], str]:
     letters = [f"({chr(ord('a') + place % 26)})" if len(panels) > 1 else "" for place in range(len(panels))]
     titles = [f"{letter} {panel.title}".strip() for letter, panel in zip(letters, panels, strict=True) if panel.title]
     untitled = [replace(panel, title=letter) for letter, panel in zip(letters, panels, strict=True)]
-    return untitled, f" {'; '.join(titles)}." if titles else ""
+    return untitled, f" {capital('; '.join(titles))}." if titles else ""
 
 
 def choose_figures(figures: Mapping[str, Figure], only: str | None) -> dict[str, Figure]:
@@ -141,20 +144,29 @@ def _drawn(figure: Figure, sheet: Sheet) -> tuple[str, bytes]:
         case Picture():
             svg = _fitted(figure.svg, sheet)
         case Playback():
-            svg = _fitted(figure.still, sheet)
+            svg = _fitted(figure.draw(sheet.width) if figure.draw else figure.still, sheet)
     return svg, _as_pdf(svg)
 
 
 def _fitted(svg: str, sheet: Sheet) -> str:
-    """Return a drawing of at most the width of the sheet: unchanged, or smaller as a whole."""
+    """Return a drawing of at most the width of the sheet: unchanged, or smaller as a whole while its text is read."""
     head, end, rest = svg.partition("<g ")
     width, height = _WIDTH.search(head), _HEIGHT.search(head)
     if width is None or height is None:
         return svg
-    shrunk = min(1.0, sheet.width * _POINTS / float(width[1]))
+    shrunk = min(1.0, max(_LEAST, sheet.width * _POINTS / float(width[1])))
     for size, found in (("width", width), ("height", height)):
         head = head.replace(found[0], f'{size}="{shrunk * float(found[1]):.6g}pt"')
     return head + end + rest
+
+
+def tell_widths(figures: Mapping[str, Figure], sheet: Sheet) -> Iterator[str]:
+    """Yield which drawings are wider than the sheet, as their text would be too small."""
+    for name, figure in figures.items():
+        found = _WIDTH.search(figure.svg.partition("<g ")[0]) if isinstance(figure, Picture) else None
+        width = _LEAST * float(found[1]) / _POINTS if found else 0.0
+        if width > sheet.width:
+            yield f"{name} is {_MM * width:.0f} mm wide: in {_MM * sheet.width:.0f} mm its text is below 7 pt"
 
 
 def _as_pdf(svg: str) -> bytes:
@@ -164,19 +176,25 @@ def _as_pdf(svg: str) -> bytes:
         (folder / "drawing.svg").write_text(svg, encoding="utf-8", errors="replace")
         source = '#set page(width: auto, height: auto, margin: 0pt)\n#image("drawing.svg")\n'
         (folder / "page.typ").write_text(source, encoding="utf-8")
-        return typst.compile(folder / "page.typ", root=folder, format="pdf", ignore_system_fonts=True, timestamp=0)
+        return typst.compile(folder / "page.typ", root=folder, format="pdf", ignore_system_fonts=True, timestamp=0,
+                             pdf_standards=["1.4"])  # fmt: skip
 
 
 def as_csv(figure: Figure) -> bytes | None:
-    """Return all points of a figure, none left out, in the units that it shows; None for a drawing without any."""
-    rows = list(_rows(figure))
+    """Return all points of a figure, none left out, in the units that it shows; None for a drawing without any.
+
+    A number that is missing or beyond every number is an empty field, as in the tables of sweeps.
+    """
+    rows = [
+        ["" if isinstance(cell, float) and not math.isfinite(cell) else cell for cell in row] for row in _rows(figure)
+    ]
     return csv_text(rows).encode("utf-8", errors="replace") if rows else None
 
 
 def _rows(figure: Figure) -> Iterator[Row]:
     match figure:
         case Curves():
-            yield ("panel", "curve", "x axis", "x", "y axis", "y")
+            yield ("panel", "curve", "x axis", "x", "y axis", "y", "low", "median", "high")
             for panel in figure.panels:
                 for series in panel.series:
                     yield from _of_curve(panel, series)
@@ -196,8 +214,11 @@ def _rows(figure: Figure) -> Iterator[Row]:
 
 
 def _of_curve(panel: Panel, series: Series) -> Iterator[Row]:
-    edges = (("", series.y), (" (lower edge of its band)", series.low), (" (upper edge of its band)", series.high))
-    for what, heights in edges:
-        for x, y in [] if heights is None else zip(series.x.tolist(), heights.tolist(), strict=True):
-            place = panel.x_names[int(x)] if panel.x_names and x == int(x) else x
-            yield (panel.title, f"{series.name or series.label}{what}", panel.x_label, place, panel.y_label, y)
+    """Yield the points of a curve: y of a point, or the ends of its band or bar and what is between them."""
+    name = series.name or series.label
+    nothing = [math.nan] * series.x.size
+    low, high = (nothing if edge is None else edge.tolist() for edge in (series.low, series.high))
+    for x, y, *ends in zip(series.x.tolist(), series.y.tolist(), low, high, strict=True):
+        place = panel.x_names[int(x)] if panel.x_names and x == int(x) and 0 <= x < len(panel.x_names) else x
+        numbers = (y, math.nan, math.nan, math.nan) if series.low is None else (math.nan, ends[0], y, ends[1])
+        yield (panel.title, name, panel.x_label, place, panel.y_label, *numbers)

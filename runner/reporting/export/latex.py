@@ -5,6 +5,7 @@ from collections.abc import Iterable, Sequence
 
 from runner.base.sanitize import plain
 from runner.reporting.export.columns import BEYOND, MISSING, PaperColumn, Unit, Written, lay_out
+from runner.reporting.export.fitting import fit
 from runner.reporting.table import Table
 
 _MEANT = {
@@ -23,17 +24,34 @@ _FACTOR = re.compile(r"(/?)([^\s/^]+)(?:\^(\d+))?")
 _LATIN = 0x17F  # up to here pdfLaTeX has the letters
 
 
-def write_latex(table: Table, caption: str, sources: Sequence[str]) -> str:
-    """Return a table as LaTeX: a tabular, with comments on packages, its origin and a caption."""
+def write_latex(table: Table, caption: str, sources: Sequence[str], width: float | None = None) -> str:
+    """Return a table as LaTeX: a tabular, with comments on packages, its origin and a caption.
+
+    Args:
+        table: The table.
+        caption: Its caption.
+        sources: Where it comes from, a comment each.
+        width: Width that it has to fit, in mm; None for the letters of the page, without a limit.
+
+    Raises:
+        RunnerError: If it does not fit the width.
+    """
     columns = lay_out(table)
+    titles: Sequence[Sequence[str]] = [[each.head] for each in columns]
+    edge, begin, end = "", [], ""
+    if width is not None:
+        titles, room, letters = fit(columns, width, _measured, at_edges=False)
+        size = rf"\fontsize{{{letters:g}}}{{{1.2 * letters:g}}}\selectfont"
+        edge, begin, end = "@{}", [rf"{{{size}\setlength{{\tabcolsep}}{{{room:g}pt}}%"], "}"
     tabular = [
-        rf"\begin{{tabular}}{{{' '.join(map(_alignment, columns))}}}",
+        *begin,
+        rf"\begin{{tabular}}{{{edge}{' '.join(map(_alignment, columns))}{edge}}}",
         r"\toprule",
-        *_head(columns),
+        *_head(columns, titles),
         r"\midrule",
         *(_row(part for each in columns for part in _parts(each, each.cells[row])) for row in range(len(table.rows))),
         r"\bottomrule",
-        r"\end{tabular}",
+        rf"\end{{tabular}}{end}",
     ]
     comments = [
         r"Needs \usepackage{booktabs} and \usepackage{siunitx}, version 3 or later.",
@@ -56,26 +74,52 @@ def _alignment(column: PaperColumn) -> str:
     return f"S[table-format={sign}{whole}.{places}]" + (" l" if column.has_intervals else "")
 
 
-def _head(columns: Sequence[PaperColumn]) -> list[str]:
-    """Return the rows of the head: titles with units, and below them the parts of each."""
+def _measured(column: PaperColumn) -> list[list[str]]:
+    """Return the strings in the one place, or the two places, of a column: numbers and intervals."""
+    if column.unit is None:
+        return [[cell.text for cell in column.cells]]
+    parts = [[*(cell.text for cell in column.cells), "median"]]
+    if column.has_intervals:
+        parts.append([*(f"[{cell.low}, {cell.high}]" for cell in column.cells if cell.low), "95 % interval"])
+    return parts
+
+
+def _head(columns: Sequence[PaperColumn], titles: Sequence[Sequence[str]]) -> list[str]:
+    """Return the rows of the head: titles with units, whose lines end in one row, and below them their parts."""
     is_split = any(each.has_intervals for each in columns)
-    above: list[str] = []
+    has_titles = any(each.title for each in columns if each.unit is not None)
+    above: list[list[list[str]]] = []
     rules: list[str] = []
     below: list[str] = []
-    for each in columns:
-        title, span = _title(each), 1 + each.has_intervals
-        of_number = ["{median}", r"95\,\% interval"][:span] if is_split or not each.title else [f"{{{title}}}"]
-        place = 1 + len(below)
-        below += [title] if each.unit is None else of_number
-        above.append("" if each.unit is None else rf"\multicolumn{{{span}}}{{c}}{{{title}}}")
+    for each, given in zip(columns, titles, strict=True):
+        span, place = 1 + each.has_intervals, 1 + len(below)
+        lines = _title(each, given)
+        if each.unit is None:
+            own, last = [[line] for line in lines[:-1]], lines[-1:]
+        elif is_split or not each.title:
+            shown = lines if each.title else []
+            own = [[rf"\multicolumn{{{span}}}{{c}}{{{line}}}"] for line in shown]
+            last = ["{median}", r"95\,\% interval"][:span]
+        else:
+            own, last = [[f"{{{line}}}"] for line in lines[:-1]], [f"{{{lines[-1]}}}"]
+        above.append(own)
         rules += [] if each.unit is None else [rf"\cmidrule(lr){{{place}-{place + span - 1}}}"]
-    has_titles = any(each.title for each in columns if each.unit is not None)
-    return [_row(above), " ".join(rules), _row(below)] if is_split and has_titles else [_row(below)]
+        below += last
+    count = max(map(len, above))
+    filled = [
+        [[""] * (1 + each.has_intervals)] * (count - len(own)) + own for each, own in zip(columns, above, strict=True)
+    ]
+    rows = [_row(part for own in filled for part in own[line]) for line in range(count)]
+    return [*rows, *([" ".join(rules)] if is_split and has_titles else []), _row(below)]
 
 
-def _title(column: PaperColumn) -> str:
+def _title(column: PaperColumn, lines: Sequence[str]) -> list[str]:
+    """Return the lines of a title, its unit as siunitx sets it."""
     unit = "" if column.unit is None else unit_macro(column.unit)
-    return f"{escape_latex(column.title)} ({unit})" if unit else escape_latex(column.title)
+    if not unit:
+        return list(map(escape_latex, lines))
+    before = lines[-1].removesuffix(f"({column.unit})").rstrip()
+    return [*map(escape_latex, lines[:-1]), f"{escape_latex(before)} ({unit})".strip()]
 
 
 def _parts(column: PaperColumn, cell: Written) -> list[str]:

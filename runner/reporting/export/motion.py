@@ -1,15 +1,20 @@
 """Motions as animated GIFs or MP4 videos, drawn without a display."""
 
+import io
+import itertools
 import tempfile
 from collections.abc import Iterator
 from dataclasses import dataclass
 from pathlib import Path
+from typing import Any
 
 import matplotlib as mpl
 import numpy as np
-from matplotlib.animation import AbstractMovieWriter, FFMpegWriter, PillowWriter
+from matplotlib.animation import AbstractMovieWriter, FFMpegWriter
 from matplotlib.axes import Axes
+from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
+from PIL import Image
 
 from runner.base.arrays import FloatArray
 from runner.reporting.charts import palette
@@ -20,10 +25,42 @@ from runner.reporting.playback import body_shapes, finite_places, first_view, fr
 from runner.store.atomic import write_atomically
 
 _DOTS = 150  # in an inch
-_SLOWEST, _FASTEST = 10, 30  # frames a second
+_SLOWEST, _FASTEST = 10.0, 30.0  # frames a second
+_HUNDREDTH = 0.01  # s, of which a GIF counts whole ones
+_EXACT = 1e-3  # share of the speed that is not said
 _LAST = 1.0  # s for which the last frame stays
 _SHARE = 0.75  # height over width
 _GHOST = "#b9c0c8"
+
+
+class GifWriter(AbstractMovieWriter):
+    """A writer of GIFs: a frame lasts whole hundredths of a second, and all of them the time of the run.
+
+    Args:
+        rate: Frames a second.
+    """
+
+    def __init__(self, rate: float) -> None:
+        super().__init__(fps=round(rate))
+        self._rate = rate
+        self._kept: list[Image.Image] = []
+
+    def setup(self, fig: Figure, outfile: str | Path, dpi: float | None = None) -> None:
+        """Begin a file."""
+        super().setup(fig, outfile, dpi)
+
+    def grab_frame(self, **options: Any) -> None:
+        """Keep the figure as a frame."""
+        picture = io.BytesIO()
+        self.fig.savefig(picture, format="rgba", dpi=self.dpi, **options)
+        self._kept.append(Image.frombytes("RGBA", self.frame_size, picture.getvalue()).convert("RGB"))
+
+    def finish(self) -> None:
+        """Write the frames."""
+        ends = [round(place / self._rate / _HUNDREDTH) for place in range(len(self._kept) + 1)]
+        last = [round(1000 * _HUNDREDTH) * (end - start) for start, end in itertools.pairwise(ends)]
+        first, *others = self._kept
+        first.save(self.outfile, save_all=True, append_images=others, duration=last, loop=0)
 
 
 @dataclass
@@ -68,20 +105,47 @@ def write_motion(playback: Playback, path: Path, sheet: Sheet) -> Path:
     """
     video = path.suffix.lower() == ".mp4" and FFMpegWriter.isAvailable()
     path = path if video or path.suffix.lower() == ".gif" else path.with_suffix(".gif")
-    runs = [playback, *playback.others[-1:]]
-    times = max((run.times[frames(run)] for run in runs), key=lambda kept: float(kept[-1]))
-    rate = (len(times) - 1) / max(float(times[-1] - times[0]), 1e-9)
-    shown = round(min(max(rate, _SLOWEST), _FASTEST))
-    writer = (FFMpegWriter if video else PillowWriter)(fps=shown)
+    runs, (times, shown, speed) = _shown(playback), _timing(playback)
+    # What a player has to know of a video is at its beginning, so that it plays while it is loaded.
+    begun = ["-movflags", "+faststart"]
+    writer: AbstractMovieWriter
+    writer = FFMpegWriter(fps=shown, extra_args=begun) if video else GifWriter(shown)  # type: ignore[arg-type]
     with mpl.rc_context(style(sheet)), tempfile.TemporaryDirectory() as folder:
         made = Path(folder) / f"motion{path.suffix.lower()}"
-        _draw(runs, times, shown / rate, sheet, writer, made)
+        _draw(runs, times, shown, speed, sheet, writer, made)
         write_atomically(path, made.read_bytes())
     return path
 
 
+def speed_told(playback: Playback) -> str:
+    """Return a sentence on a motion that is shown faster or slower than the run; empty for the time of the run."""
+    times, _, speed = _timing(playback)
+    if abs(speed - 1.0) < _EXACT:
+        return ""
+    return f"the motion of {times[-1] - times[0]:.4g} s is shown at {speed:.3g} times its speed, which the picture says"
+
+
+def _shown(playback: Playback) -> list[Playback]:
+    """Return the run, and its ghost if it has one."""
+    return [playback, *playback.others[-1:]]
+
+
+def _timing(playback: Playback) -> tuple[FloatArray, float, float]:
+    """Return the times of the frames, in s, the frames a second, and the speed of the picture over that of the run."""
+    times = max((run.times[frames(run)] for run in _shown(playback)), key=lambda kept: float(kept[-1]))
+    rate = (len(times) - 1) / max(float(times[-1] - times[0]), 1e-9)
+    shown = min(max(rate, _SLOWEST), _FASTEST)
+    return times, shown, shown / rate if rate else 1.0
+
+
 def _draw(
-    runs: list[Playback], times: FloatArray, speed: float, sheet: Sheet, writer: AbstractMovieWriter, path: Path
+    runs: list[Playback],
+    times: FloatArray,
+    rate: float,
+    speed: float,
+    sheet: Sheet,
+    writer: AbstractMovieWriter,
+    path: Path,
 ) -> None:
     azimuth, elevation = np.degrees(first_view(runs[0]))
     camera = Camera(float(azimuth), float(elevation))
@@ -94,9 +158,9 @@ def _draw(
     drawn = [_add(axes, run, camera, points, ghost=place > 0) for place, run in enumerate(runs)]
     text = figure.text(0.02, 0.98, "", va="top", color=INK, fontsize=sheet.font)
     text.set_parse_math(False)
-    fast = "" if abs(speed - 1.0) < 0.05 else f"   (speed × {speed:.2g})"
+    fast = "" if abs(speed - 1.0) < _EXACT else f"   (speed × {speed:.3g})"
     with writer.saving(figure, path, _DOTS):
-        for time in [*times, *np.repeat(times[-1:], int(_LAST * writer.fps))]:
+        for time in [*times, *np.repeat(times[-1:], int(_LAST * rate))]:
             lines = [f"{time:.2f} s{fast}"]
             for each, word in zip(drawn, ("", "grey: "), strict=False):
                 each.show(float(time))
@@ -134,7 +198,8 @@ def _add(axes: Axes, run: Playback, camera: Camera, points: float, ghost: bool) 
     """Add a run to the picture; a ghost is grey and behind everything."""
     if run.desired is not None and not ghost:
         axes.plot(*camera.project(run.desired).T, color=GREY, lw=1.2, ls=(0, (4, 2)), zorder=-1e5)
-    axes.plot(*camera.project(run.path).T, color=_GHOST if ghost else palette.color(1), lw=1.2, zorder=-1e5)
+    color = palette.color(1 if run.look is None else run.look)
+    axes.plot(*camera.project(run.path).T, color=_GHOST if ghost else color, lw=1.2, zorder=-1e5)
     lines = list(_shape_lines(axes, run, camera, points, ghost))
     return _Drawn(run, frames(run), lines, -1e4 if ghost else 0.0)
 

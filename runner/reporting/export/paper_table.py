@@ -7,9 +7,10 @@ import numpy as np
 
 from runner.base.arrays import FloatArray
 from runner.base.quantities import ROUNDING
-from runner.reporting.export.columns import escape_markdown, write_markdown, write_typst
+from runner.reporting.export.columns import escape_markdown, write_markdown
 from runner.reporting.export.latex import write_latex
 from runner.reporting.export.pooling import Pooled, pool
+from runner.reporting.export.typst import write_typst
 from runner.reporting.metric_titles import title
 from runner.reporting.sweep.subject import choose, key_label
 from runner.reporting.table import Cell, Column, Number, Table, numbers
@@ -33,13 +34,21 @@ class PaperTable(NamedTuple):
     notes: Sequence[str]
     sources: Sequence[str]
 
-    def written(self, form: str) -> str:
-        """Return it as "markdown", "latex" or "typst", with its notes and sources."""
+    def written(self, form: str, width: float | None = None) -> str:
+        """Return it as "markdown", "latex" or "typst", with its notes and sources.
+
+        Args:
+            form: The format.
+            width: Width that LaTeX and Typst have to fit, in mm; None for any.
+
+        Raises:
+            RunnerError: If it does not fit.
+        """
         caption = " ".join(self.notes)
         if form == "latex":
-            return write_latex(self.table, caption, self.sources)
+            return write_latex(self.table, caption, self.sources, width)
         if form == "typst":
-            return write_typst(self.table, caption, self.sources)
+            return write_typst(self.table, caption, self.sources, width)
         below = "  \n".join(map(escape_markdown, [caption, *self.sources]))
         return f"{write_markdown(self.table)}\n\n{below}\n"
 

@@ -1,6 +1,7 @@
 """Distributions of a metric, and the cells with the lowest and the highest median."""
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass
 
 import numpy as np
 
@@ -9,17 +10,18 @@ from runner.base.errors import StoreError
 from runner.base.quantities import format_range, quantity, with_ends
 from runner.reporting.charts.figure import POINTS, spaced_indices
 from runner.reporting.document import Block, Curves, Notice, Panel, Section, Series, Table, Text
-from runner.reporting.figures import overlaid, playback, torque_and_error
+from runner.reporting.figures import playback, torque_and_error
 from runner.reporting.markup import literal
 from runner.reporting.metric_titles import title
+from runner.reporting.overlaid_runs import Level, overlaid
 from runner.reporting.sweep.subject import QUANTILE_RULE, Subject, group_levels, spans_decades
 from runner.reporting.table import numbers
 from runner.statistics import median_interval
 from runner.store import Run
 from runner.store.axes import Axis
-from runner.sweeps.question import find_question, is_condition
+from runner.sweeps.question import SEED, find_question, is_condition
 
-_MOST_LINES = 8
+_MOST_LEVELS, _MOST_CELLS = 6, 24  # whose curves are shown
 
 
 def section(subject: Subject) -> Section:
@@ -29,10 +31,14 @@ def section(subject: Subject) -> Section:
     blocks: list[Block] = []
     if panels:
         caption = (
-            f"Share of all repetitions in which the {title(metric)} is at most the value below, by axis; a curve that "
+            f"Share of all repetitions in which the {title(metric)} is at most the value below; a curve that "
             "ends below 1 leaves repetitions that failed or never settled."
         )
-        blocks.append(Curves(caption, panels, columns=min(2, len(panels))))
+        for axis in subject.axes:
+            count = int(group_levels(axis).max()) + 1
+            shown = len(subject.looks(axis))
+            caption += f" {shown} of {count} values of {axis.name} are shown." if shown < count else ""
+        blocks.append(Curves(literal(caption), panels, columns=min(2, len(panels))))
     if not any(is_condition(axis.name) for axis in subject.axes):
         blocks.append(_in_order(subject, metric))
     return Section("Distributions", blocks)
@@ -93,13 +99,13 @@ def _shares(subject: Subject, metric: str, axis: Axis) -> Panel:
     values = subject.measurements.values[metric]
     groups = group_levels(axis)
     series = []
-    for group in spaced_indices(int(groups.max()) + 1, _MOST_LINES):
+    for group, look in subject.looks(axis).items():
         chosen = groups == group
         pooled = values[chosen]
         x, y = _distribution(pooled[~np.isnan(pooled)])
         first, last = int(axis.level[chosen].min()), int(axis.level[chosen].max())
         name = axis.text(first) + (f" to {axis.text(last)}" if last > first else "")
-        series.append(Series(name, x, y))
+        series.append(Series(name, x, y, color=look, level=True))
     title = f"by {axis.name}"
     return Panel(
         title,
@@ -142,34 +148,92 @@ def _in_order(subject: Subject, metric: str) -> Curves:
     )
 
 
-def motions_section(subject: Subject, shown: Mapping[int, Run], at: str) -> Section:
-    """Return the motions of cells that differ only in the question.
+@dataclass(frozen=True)
+class ShownCells:
+    """The cells whose curves and motions a report shows.
+
+    Attributes:
+        axis: The axis whose levels are told apart; None if only seeds were swept.
+        cells: The cells of each of its levels, by ascending median, the name of the level, and its look.
+        at: What all of them share, such as "noise.position=0.001"; empty for nothing.
+    """
+
+    axis: Axis | None
+    cells: Sequence[tuple[str, Sequence[int], int]]
+    at: str = ""
+
+
+def choose_cells(subject: Subject, among: Sequence[int], at: str = "") -> ShownCells:
+    """Return the cells to show: of some levels of the question, or of the first axis, some that are spread evenly."""
+    axes = [axis for axis in subject.axes if axis.name != SEED]
+    axis = find_question(subject.axes, subject.measurements.question) or next(iter(axes), None)
+    allowed = set(among)
+    ordered = [cell for cell in subject.order.tolist() if cell in allowed]
+    sound = [cell for cell in ordered if subject.measurements.statuses[cell] == "ok"]
+    if axis is None:
+        return ShownCells(None, [("all seeds", _some(sound or ordered, _MOST_CELLS), 0)], at)
+    groups, looks = group_levels(axis), subject.looks(axis)
+    found = {group: [cell for cell in sound if groups[cell] == group]
+             or [cell for cell in ordered if groups[cell] == group] for group in looks}  # fmt: skip
+    kept = [group for group, cells in found.items() if cells]
+    kept = [kept[place] for place in spaced_indices(len(kept), _MOST_LEVELS)]
+    most = max(1, _MOST_CELLS // max(1, len(kept)))
+    cells = [(f"{axis.name}={axis.text(int(axis.level[found[group][0]]))}", _some(found[group], most), looks[group])
+             for group in kept]  # fmt: skip
+    return ShownCells(axis, cells, at)
+
+
+def _some(cells: Sequence[int], most: int) -> list[int]:
+    return [cells[place] for place in spaced_indices(len(cells), most)]
+
+
+def motions_section(subject: Subject, shown: ShownCells, runs: Mapping[int, Run]) -> Section:
+    """Return the motions of cells that differ only in the question and the seed.
 
     Args:
         subject: The sweep.
-        shown: The run of each cell that is shown.
-        at: The condition that they share; empty for none.
+        shown: The cells.
+        runs: The run of each of them.
     """
-    asked = find_question(subject.axes, subject.measurements.question)
-    names = {
-        cell: f"{asked.name}={asked.text(int(asked.level[cell]))}" if asked else subject.cell_name(cell)
-        for cell in shown
-    }
-    where = [Text(literal(f"The runs differ only in {asked.name}, at {at}."))] if asked and at else []
-    return Section("Motions", (*where, *motion_blocks({names[cell]: run for cell, run in shown.items()})))
+    where = (
+        [Text(literal(f"The runs differ only in {shown.axis.name}, at {shown.at}."))] if shown.axis and shown.at else []
+    )
+    return Section("Motions", (*where, *_motions(subject, shown, runs)))
 
 
-def extremes_section(subject: Subject, shown: Mapping[int, Run]) -> Section:
+def extremes_section(subject: Subject, shown: ShownCells, runs: Mapping[int, Run]) -> Section:
     """Return the cells with the lowest and the highest median of the first metric, and some motions.
 
     Args:
         subject: The sweep, with at least one ranked cell.
-        shown: The run of each cell that is shown, by ascending median.
+        shown: The cells whose curves and motions are shown.
+        runs: The run of each of them.
     """
     ranked = subject.ranked
     ends = [ranked[0], ranked[-1]] if len(ranked) > 1 else [ranked[0]]
-    motions = motion_blocks({subject.cell_name(cell): run for cell, run in shown.items()})
-    return Section("Lowest and highest median", (_medians(subject, ends), *motions))
+    return Section("Lowest and highest median", (_medians(subject, ends), *_motions(subject, shown, runs)))
+
+
+def _motions(subject: Subject, shown: ShownCells, runs: Mapping[int, Run]) -> list[Block]:
+    levels = [Level(name, [runs[cell] for cell in cells], look) for name, cells, look in shown.cells]
+    count = sum(len(cells) for _, cells, _ in shown.cells)
+    others = [axis for axis in subject.axes if axis is not shown.axis]
+    names = [subject.cell_name(cells[0], others) for _, cells, _ in shown.cells]
+    where = ", ".join(filter(None, [shown.at, *_spans(subject, shown, others)]))
+    told = f" {count} of {len(subject.measurements.hashes)} cells{f': {where}' if where else ''}."
+    played = "; ".join(
+        f"{name}{f' at {at}' if at else ''}" for (name, _, _), at in zip(shown.cells, names, strict=True)
+    )
+    return motion_blocks(levels, literal(told), literal(played))
+
+
+def _spans(subject: Subject, shown: ShownCells, others: Sequence[Axis]) -> Iterator[str]:
+    """Yield the values of the other axes that the shown cells have, where they are not shared by all."""
+    cells = [cell for _, some, _ in shown.cells for cell in some]
+    for axis in others:
+        levels = np.unique(axis.level[cells]).tolist()
+        if f"{axis.name}=" not in shown.at:
+            yield f"{axis.name}={axis.text(levels[0])}{f' to {axis.text(levels[-1])}' if len(levels) > 1 else ''}"
 
 
 def _medians(subject: Subject, cells: Sequence[int]) -> Table:
@@ -200,13 +264,13 @@ def _with_interval(values: np.ndarray, unit: str) -> str:
     return f"{text} (n = {interval.n})" if interval.low is None else f"{text} ({ends}, n = {interval.n})"
 
 
-def motion_blocks(runs: Mapping[str, Run]) -> list[Block]:
-    """Return curves and motions of repetition 0 of some runs by their names, or the reason why there are none."""
+def motion_blocks(levels: Sequence[Level], told: str = "", played: str = "") -> list[Block]:
+    """Return curves and motions of repetition 0 of some runs, or the reason why there are none; see `overlaid`."""
     try:
-        if len(runs) == 1:
-            (run,) = runs.values()
-            curves = torque_and_error(run, "Torque of each joint and tip position error, repetition 0.")
+        if len(levels) == 1 and len(levels[0].runs) == 1:
+            (run,) = levels[0].runs
+            curves = torque_and_error(run, f"Torque of each joint and tip position error, repetition 0.{told}")
             return [curves, playback(run, "The motion of repetition 0.")]
-        return overlaid(list(runs.values()), list(runs))
+        return overlaid(levels, told, played)
     except StoreError as error:
         return [Notice("warning", "No motion to show", literal(str(error)))]

@@ -100,28 +100,22 @@ def cells_with_intervals(subject: Subject, metric: str) -> Curves | None:
         name = f"{other[0].name} = {other[0].text(group)}" if other else ""
         x = places(along)[along.level[cells]]
         hints, runs = subject.hints(cells), subject.hashes(cells)
-        curve = Series(name, x, median, "points_line", low, high, group, hints, runs)
-        beside = _APART * (group - (count - 1) / 2)
-        curves += [curve] if along.numbers is not None else at_texts(replace(curve, x=x + beside))
+        look = subject.looks(other[0])[group] if other else 0
+        curve = Series(name, x, median, "points_line", low, high, look, hints, runs, level=bool(other))
+        if along.numbers is None:  # a line between names would mean nothing
+            beside = _APART * (group - (count - 1) / 2)
+            curve = replace(curve, style="points", shift=np.full(x.size, beside))
+        curves.append(curve)
     if not any(np.isfinite(series.y).any() for series in curves):
         return None
     panel = axis_panel("", along, subject.label(metric), curves, np.concatenate([series.y for series in curves]))
     sizes = sorted({subject.measurements.of_cell(metric, cell).size for cell in range(len(groups))})
     n = f"n = {sizes[0]}" if len(sizes) == 1 else f"n = {sizes[0]} to {sizes[-1]}"
     interval = f"its 95 % interval by the bootstrap over the repetitions ({n}), if enough"
-    caption = f"Median of each cell; shaded, or a bar, {interval}."
+    lost = int(np.isinf(subject.medians[metric]).sum())
+    missing = f" {lost} of {len(groups)} cells are missing: most of their repetitions failed or never got there."
+    caption = f"Median of each cell; shaded, or a bar, {interval}.{missing if lost else ''}"
     return Curves(caption, [panel], columns=1)
-
-
-def at_texts(series: Series) -> list[Series]:
-    """Return a curve over names as points with upright bars: a line between names would mean nothing."""
-    if series.low is None or series.high is None:
-        return [replace(series, style="points")]
-    gap = np.full(series.x.size, np.nan)
-    bars = Series(
-        "", np.repeat(series.x, 3), np.column_stack([series.low, series.high, gap]).ravel(), color=series.color
-    )
-    return [bars, replace(series, style="points", low=None, high=None)]
 
 
 def places(axis: Axis) -> FloatArray:

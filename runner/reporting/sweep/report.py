@@ -13,7 +13,6 @@ from runner.base.quantities import quantity
 from runner.base.sanitize import few, one_line
 from runner.reporting.answer_map import make_map
 from runner.reporting.answers import Answer
-from runner.reporting.charts.figure import spaced_indices
 from runner.reporting.comparison.pairs import label_text
 from runner.reporting.comparison.sweeps import NOISE_ALONE, noise_alone
 from runner.reporting.conditions import conditions_of
@@ -51,7 +50,6 @@ MOST_RUNS = 5000
 
 _MOST_VALUES = 100  # of what made the runs
 _MOST_CHOICES = 4  # that the title names
-_MOST_MOTIONS = 6  # that are laid over each other, from the lowest to the highest median
 _NAMED = 3  # cells that failed, on the first screen
 
 
@@ -115,14 +113,14 @@ def _motions(subject: Subject, sweep: Sweep, answers: Sequence[Answer]) -> Secti
     first = next((one.metric for one in answers if one.rank == 0), "")
     found = max(conditions_of(answers, first), key=lambda each: each.size, default=None)
     pairs = [one.pairs for one in (found.answers if found else answers) if one.pairs and one.metric == first]
-    cells = list(dict.fromkeys(int(of[0]) for some in pairs for of in (some.of_a, some.of_b)))[:_MOST_MOTIONS]
-    if not cells:
-        ranked = subject.ranked
-        cells = [ranked[place] for place in spaced_indices(len(ranked), _MOST_MOTIONS)]
+    compared = [int(cell) for some in pairs for of in (some.of_a, some.of_b) for cell in of]
+    at = label_text(found.at) if found else ""
+    shown = distributions.choose_cells(subject, compared or subject.ranked, at)
+    cells = [cell for _, some, _ in shown.cells for cell in some]
     runs = dict(zip(cells, replace(sweep, hashes=subject.hashes(cells)).runs(), strict=True))
-    if answers:
-        return distributions.motions_section(subject, runs, label_text(found.at) if found else "")
-    return distributions.extremes_section(subject, runs)
+    if compared:
+        return distributions.motions_section(subject, shown, runs)
+    return distributions.extremes_section(subject, shown, runs)
 
 
 def _key_numbers(subject: Subject) -> list[tuple[str, str, str]]:

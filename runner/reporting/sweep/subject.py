@@ -11,10 +11,13 @@ from numpy.typing import NDArray
 from runner.base.arrays import FloatArray
 from runner.base.quantities import label_with_unit, quantity
 from runner.config.compose.units import key_unit
+from runner.reporting.charts import palette
+from runner.reporting.charts.figure import spaced_indices
 from runner.reporting.metric_titles import COSTS, metric_label, title, whole_metrics
 from runner.store.axes import Axis
 from runner.sweeps.differing import UNITS
 from runner.sweeps.measurements import Measurements
+from runner.sweeps.question import find_question
 from runner.sweeps.table import median_ends
 
 if TYPE_CHECKING:
@@ -22,6 +25,9 @@ if TYPE_CHECKING:
 
 MOST_METRICS = 5
 """Metrics that a report compares if the user names none."""
+
+MOST_LOOKS = len(palette.LIGHT)
+"""Levels of an axis that a figure shows: each has its own colour, mark and dash."""
 
 MOST_GROUPS = 64
 """An axis with more values is divided into this many groups of neighbours where effects are computed."""
@@ -90,13 +96,29 @@ class Subject:
         medians, statuses = self.medians[self.metrics[0]], self.measurements.statuses
         return [cell for cell in self.order.tolist() if np.isfinite(medians[cell]) and statuses[cell] == "ok"]
 
+    def looks(self, axis: Axis) -> dict[int, int]:
+        """Return the looks of an axis: the index of colour, mark and dash of each group of levels that figures show.
+
+        The axis of the question has the first looks. Those of the other axes follow, while there are enough for all.
+        """
+        asked = find_question(self.axes, self.measurements.question)
+        first = 0
+        for other in sorted(self.axes, key=lambda each: each is not asked):
+            shown = spaced_indices(int(group_levels(other).max(initial=0)) + 1, MOST_LOOKS)
+            first = first if first + len(shown) <= MOST_LOOKS else 0
+            if other is axis:
+                break
+            first += len(shown)
+        return {group: first + place for place, group in enumerate(shown)}
+
     def label(self, metric: str) -> str:
         """Return the title of a metric with its unit, as on the axis of a figure."""
         return metric_label(metric, self.measurements.units[metric])
 
-    def cell_name(self, cell: int) -> str:
-        """Return the values of a cell on all axes, such as "noise.position=0.001, torque_limits.max=20"."""
-        return ", ".join(f"{axis.name}={axis.text(int(axis.level[cell]))}" for axis in self.axes)
+    def cell_name(self, cell: int, axes: Sequence[Axis] | None = None) -> str:
+        """Return the values of a cell on some axes, or all, such as "noise.position=0.001, torque_limits.max=20"."""
+        shown = self.axes if axes is None else axes
+        return ", ".join(f"{axis.name}={axis.text(int(axis.level[cell]))}" for axis in shown)
 
     def hint(self, cell: int) -> str:
         """Return the hint of a cell, the text at the pointer."""

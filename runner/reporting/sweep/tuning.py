@@ -20,6 +20,7 @@ from runner.reporting.document import Block, Curves, Document, Notice, Origin, P
 from runner.reporting.figures import cover
 from runner.reporting.markup import literal
 from runner.reporting.metric_titles import metric_label, title
+from runner.reporting.overlaid_runs import Level
 from runner.reporting.sentences import sentences
 from runner.reporting.sweep.cells import caveats_sections, failed_table
 from runner.reporting.sweep.distributions import motion_blocks
@@ -331,7 +332,7 @@ def _trial(trials: Trials, place: int, run: Run) -> list[Block]:
     told = "Medians, in brackets smallest and largest over the repetitions."
     return [
         Table("Tuned keys.", ["key", *numbers("value", "range")], rows, Origin(command=trials.command(place))),
-        *motion_blocks({"": run}),
+        *motion_blocks([Level("", [run], 0)]),
         Table(told, ["metric", *numbers("value")], metrics),
     ]
 

@@ -120,7 +120,8 @@ def _lead(a: Entry, b: Entry, compared: Sequence[Comparison], decided: tuple[flo
     p_value, level = decided
     ends = [each.interval(level) or (-np.inf, np.inf) for each in compared]
     low, high = min(low for low, _ in ends), max(high for _, high in ends)
-    shown = bool(p_value < ALPHA and min(each.difference for each in compared) > np.log(_LEAST))
+    has_values = all(each.n for each in compared)  # of both laws, in any draw
+    shown = bool(has_values and p_value < ALPHA and min(each.difference for each in compared) > np.log(_LEAST))
     return Lead(a.law, b.law, factor, (float(np.exp(low)), float(np.exp(high))), float(p_value), shown)
 
 

@@ -20,7 +20,6 @@ from runner.reporting.published_claims import (
     load_claims,
     verdict_on,
 )
-from runner.reporting.sweep.effects import at_texts
 from runner.reporting.words import PRESET
 from runner.store import Run
 from runner.study.measured import Measured
@@ -164,7 +163,7 @@ def around_printed(runs: Runs, caption: str, given: Sequence[Judged]) -> Curves:
         ends = np.array([each.quantiles() / (each.printed or 1.0) for each in shown]).reshape(-1, 3)
         middle, low, high = np.where(np.isfinite(ends), ends, np.nan).T
         x = np.array([numbers.index(each.claim.number) for each in shown]) + _BESIDE * side
-        series += at_texts(Series(words, x, middle, "points", low, high, _COLORS[preset]))
+        series.append(Series(words, x, middle, "points", low, high, _COLORS[preset]))
     across = np.array([-0.5, len(numbers) - 0.5])
     limits = (("a claim matches in between", FACTOR), ("", 1.0 / FACTOR))
     series += [Series(name, across, np.full(2, factor), "dotted", color=7) for name, factor in limits]

@@ -15,7 +15,8 @@ def test_a_sweep_becomes_a_paper_by_two_commands(cli, tmp_path, monkeypatch):
     monkeypatch.chdir(tmp_path)
     swept = cli("-m", *RUN, "controller=computed_torque,operational_space").folder
     assert cli("figures", swept, "--output", "figures").code == 0
-    table = ("--by", "controller", "--metrics", "max_tracking_error,peak_torque", "--output", "table.typ")
+    table = ("--by", "controller", "--metrics", "max_tracking_error,peak_torque", "--width", "single", "--output",
+             "table.typ")  # fmt: skip
     assert cli("table", swept, *table).code == 0
     shutil.copy(examples_dir() / "paper" / "paper.typ", tmp_path)
     pages = typst.compile(tmp_path / "paper.typ", root=tmp_path, format="svg", ignore_system_fonts=True)

@@ -11,7 +11,7 @@ from support.sample_document import playback
 
 from runner.reporting.charts.sheet import column
 from runner.reporting.export import motion
-from runner.reporting.export.motion import write_motion
+from runner.reporting.export.motion import speed_told, write_motion
 
 SMALL = column(60.0)
 
@@ -28,9 +28,34 @@ def pictures(path):
 @pytest.mark.costs(3)
 def test_a_motion_lasts_as_long_as_the_run_and_rests_for_a_second(tmp_path):
     found = pictures(write_motion(playback(), tmp_path / "m.gif", SMALL))
-    assert sum(duration for duration, _ in found) == pytest.approx(3000, abs=250)  # 2 s and 1 s, in 10 ms each
+    assert sum(duration for duration, _ in found) == pytest.approx(3000, abs=50)  # 2 s and 1 s
+    assert all(duration % 10 == 0 for duration, _ in found)
     assert np.abs(found[0][1] - found[len(found) // 2][1]).max() > 100
     assert found[0][1].shape[1] == int(60 / 25.4 * 150)
+
+
+@pytest.mark.costs(3)
+@pytest.mark.parametrize(("frames", "last"), [(60, 2.0), (61, 2.0), (114, 4.0), (30, 1.1)])
+def test_a_gif_takes_the_time_of_the_run_at_any_rate(tmp_path, frames, last):
+    """Fault 4: 60 frames of 30 ms for 2 s are 11 % too fast, as a GIF counts hundredths of a second."""
+    motion = playback(frames, times=np.linspace(0.0, last, frames), desired=None)
+    found = [duration for duration, _ in pictures(write_motion(motion, tmp_path / "m.gif", SMALL))]
+    rest = int((frames - 1) / last) / ((frames - 1) / last)  # frames of the last second, and the last of the motion
+    assert sum(found) / 1e3 == pytest.approx(last + rest + last / (frames - 1), abs=0.011)
+    assert speed_told(motion) == ""
+
+
+def test_a_motion_that_is_too_long_is_told_to_be_faster():
+    assert speed_told(playback(13, times=np.linspace(0.0, 12.0, 13))) == (
+        "the motion of 12 s is shown at 10 times its speed, which the picture says"
+    )
+
+
+@pytest.mark.skipif(not FFMpegWriter.isAvailable(), reason="ffmpeg is not installed")
+def test_a_video_plays_while_it_is_loaded(tmp_path):
+    """Question 24: the index of an MP4, `moov`, is before its pictures, `mdat`."""
+    content = write_motion(playback(10, times=np.linspace(0.0, 0.5, 10)), tmp_path / "m.mp4", SMALL).read_bytes()
+    assert 0 < content.index(b"moov") < content.index(b"mdat")
 
 
 class Frames(AbstractMovieWriter):
@@ -54,7 +79,7 @@ class Frames(AbstractMovieWriter):
 @pytest.mark.costs(2)
 def test_the_drawn_arm_and_its_ghost_are_as_recorded(tmp_path, monkeypatch, as_recorded):
     writer = Frames()
-    monkeypatch.setattr(motion, "PillowWriter", lambda fps: writer)
+    monkeypatch.setattr(motion, "GifWriter", lambda rate: writer)
     ghost = playback(20, name="B", desired=None)
     write_motion(playback(20, name="A", ends="failed at 2 s", others=[ghost]), tmp_path / "m.gif", SMALL)
     as_recorded("drawings", "motion", writer.kept)

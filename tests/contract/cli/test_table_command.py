@@ -8,6 +8,7 @@ import pytest
 
 from runner import run
 from runner.store import write_sweep
+from runner.sweeps.at_work import at_work
 
 CASE = ("robot=macro", "trajectory=quintic", "duration=0.05", "noise.position=1e-4", "repetitions=6", "outputs=o")
 CONTROLLERS = ("computed_torque", "operational_space")
@@ -117,6 +118,41 @@ def test_a_sweep_that_is_not_whole_tells_what_is_missing(cli, tmp_path):
     ending = cli("table", folder, "--format", "markdown")
     assert ending.code == 2
     assert f"1 of 2 cells of {folder} are not stored; continue with: runner -m controller=" in ending.err
+
+
+def test_a_sweep_that_runs_is_not_started_again(cli, tmp_path):
+    """Fault 13: a table of a running sweep advised to start it again."""
+    done = run(f"controller={CONTROLLERS[0]}", *CASE[:-1], f"outputs={tmp_path}/o")
+    jobs = [(("controller=computed_torque",), done.hash), (("controller=operational_space",), "0" * 24)]
+    folder = write_sweep(tmp_path / "o", jobs, "runner -m controller=computed_torque,operational_space")
+    with at_work(folder):
+        ending = cli("table", folder)
+    assert ending.code == 2
+    assert f"{folder} is running, 1 of 2 cells are stored; wait, or watch it with: runner status" in ending.err
+    assert "runner -m" not in ending.err
+
+
+@pytest.mark.parametrize(
+    ("options", "message"),
+    [
+        (
+            ("--format", "latex", "--width", "59"),
+            "--width: not a width ('59'). Allowed: single (88 mm), double (180 mm)",
+        ),
+        (("--format", "typst", "--width", "wide"), "--width: not a width ('wide')."),
+        (
+            ("--format", "markdown", "--width", "single"),
+            "--width: not with markdown (single). Allowed: --format latex or",
+        ),
+        (("--width", "single"), "--width: not with the whole table (single)."),
+        (("--format", "latex", "--width", "60"), "--width: the table needs "),
+    ],
+)
+def test_a_width_that_no_table_has_is_one_line(cli, sweep, options, message):
+    ending = cli("table", sweep, *options)
+    assert ending.code == 2
+    assert ending.err.startswith(f"runner: {message}")
+    assert len(ending.err.splitlines()) == 1
 
 
 def test_the_whole_table_stays_as_it_was(cli, sweep):

@@ -11,7 +11,9 @@ from support.sample_document import HOSTILE, SVG, curves, document, maps, playba
 from runner.base.errors import RunnerError
 from runner.reporting.charts.sheet import column
 from runner.reporting.document import Curves, Document, Maps, Origin, Panel, Picture, Section, Series
-from runner.reporting.export.figures import as_csv, choose_figures, figures_of, for_paper, write_figures
+from runner.reporting.export.figures import as_csv, choose_figures, figures_of, for_paper, tell_widths, write_figures
+from runner.reporting.figures import playback as still_of
+from runner.reporting.figures import still_motion
 
 SHEETS = {88.0: column(88.0), 180.0: column(180.0)}
 POINTS = 72.0 / 25.4  # in a millimetre
@@ -58,7 +60,7 @@ def test_titles_of_panels_are_in_the_caption_and_letters_in_the_figure():
     figure, caption = for_paper(maps("m $$ $omega$"))
     assert [panel.title for panel in figure.panels] == ["(a)", "(b)"]
     assert caption == "m $ omega (a) m $$ $omega$; (b) m $$ $omega$."
-    assert for_paper(curves("m", panels=[curves("m").panels[0]]))[1] == "m m."
+    assert for_paper(curves("m", panels=[curves("m").panels[0]]))[1] == "m M."
     assert for_paper(playback())[1] == "It moves."
 
 
@@ -97,7 +99,7 @@ def test_a_drawing_is_made_smaller_and_never_larger(tmp_path):
     small = wide.replace("400pt", "40pt").replace("200pt", "20pt")
     written(tmp_path, [Picture("first wide", wide, ""), Picture("second small", small, "")])
     first, second = (size_of(path.read_bytes()) for path in sorted(tmp_path.glob("*.pdf")))
-    assert first == pytest.approx([88.0 * POINTS, 44.0 * POINTS], abs=0.1)
+    assert first == pytest.approx([400.0 * 7.0 / 7.5, 200.0 * 7.0 / 7.5], abs=0.1)  # its text stays at 7 pt
     assert second == pytest.approx([40.0, 20.0], abs=0.1)
 
 
@@ -144,3 +146,27 @@ def test_panels_stand_below_each_other_in_a_narrow_column(tmp_path):
         (name,) = written(tmp_path / str(width), [three], sheet)
         heights.append(size_of((tmp_path / str(width) / f"{name}.pdf").read_bytes())[1])
     assert heights[0] > 1.5 * heights[1]
+
+
+def test_a_drawing_that_would_be_too_small_is_named_with_its_width():
+    wide = SVG.replace('width="40" height="20"', 'width="400pt" height="200pt"').replace("<path", "<g ></g><path")
+    figures = figures_of(report(Picture("wide", wide, ""), Picture("small", SVG, "")))
+    assert list(tell_widths(figures, SHEETS[88.0])) == ["wide is 132 mm wide: in 88 mm its text is below 7 pt"]
+    assert list(tell_widths(figures, SHEETS[180.0])) == []
+
+
+def test_all_files_have_one_version_of_pdf(tmp_path):
+    """Fault 11: pdfTeX warns of a figure that is newer than 1.5."""
+    written(tmp_path, [curves("error"), Picture("drawing", SVG, ""), playback()])
+    assert {path.read_bytes()[:8] for path in tmp_path.glob("*.pdf")} == {b"%PDF-1.4"}
+
+
+@pytest.mark.costs(4)
+@pytest.mark.parametrize("width", [60.0, 88.0, 120.0, 180.0])
+def test_the_still_of_a_motion_has_letters_of_7_points_at_any_width(runs, tmp_path, width):
+    sheet = column(width)
+    written(tmp_path, [still_of(runs["quintic"], "")], sheet)
+    made = size_of((tmp_path / "motion.pdf").read_bytes())[0]
+    assert made <= width * POINTS + 0.1
+    drawn = float(re.search(r'width="([\d.]+)pt"', still_motion(runs["quintic"], width=sheet.width))[1])
+    assert 7.5 * min(1.0, made / drawn) >= 7.0

@@ -1,5 +1,6 @@
 """Cells of a sweep compared in pairs on the same seeds: the full tables, and the two ends of the order."""
 
+from collections import defaultdict
 from dataclasses import replace
 
 import numpy as np
@@ -65,8 +66,13 @@ def test_missing_repetitions_are_left_out_and_failed_ones_are_beyond_every_numbe
 @pytest.fixture(name="blocks")
 def _blocks(monkeypatch):
     """Return the blocks on the first and the last cell, whose runs are not stored: no motion is shown."""
-    monkeypatch.setattr(distributions, "motion_blocks", lambda _: [])
-    return lambda subject: distributions.extremes_section(subject, {}).blocks
+    monkeypatch.setattr(distributions, "motion_blocks", lambda *_: [])
+
+    def made(subject):
+        shown = distributions.choose_cells(subject, subject.ranked)
+        return distributions.extremes_section(subject, shown, defaultdict(lambda: None)).blocks
+
+    return made
 
 
 def test_n_stands_beside_the_intervals_of_both_ends(blocks):

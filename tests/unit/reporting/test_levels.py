@@ -6,8 +6,9 @@ import numpy as np
 import pytest
 
 from runner.base.errors import RunnerError
+from runner.reporting.comparison.difference_figure import difference_panel
 from runner.reporting.comparison.pairs import MOST_PAIRS, compare, level_pairs
-from runner.reporting.comparison.sweeps import compare_levels
+from runner.reporting.comparison.sweeps import answer_rows, compare_levels
 from runner.statistics import compare_paired
 from runner.store.axes import Axis
 from runner.sweeps.measurements import Measurements
@@ -152,8 +153,44 @@ def test_what_is_beyond_every_number_in_more_levels_on_one_side_is_so_in_the_mea
     values[1, 0] = values[2, 1] = values[0, 2] = values[1, 2] = np.inf  # b; a at the other level; both at one level
     overall = compare(level_pairs(sweep, "controller", ())[0], "rms")
     assert overall.differences[:2].tolist() == [np.inf, -np.inf]
-    assert overall.differences[2] == pytest.approx((values[3, 2] - values[2, 2]) / 2)
-    assert overall.lost == (2, 2)
+    assert overall.differences[2] == pytest.approx(values[3, 2] - values[2, 2])  # only of the level with values
+    assert overall.lost == (1, 1)
+    assert str(overall.empty) == "neither has a value in 1 of 16 repetitions, at 1 of 2 levels"
+
+
+def settling(levels=(1.0, 10.0, 400.0)):
+    """Return a sweep in which both laws settle at one level only: at the others neither does, or both runs failed."""
+    sweep = grid({"controller": ["a", "b"], "gain": list(levels)}, lambda law, gain: 1.0 + 0.1 * law)
+    sweep.values["rms"][sweep.axes[1].level != 1] = np.inf
+    return sweep
+
+
+def test_a_level_without_any_value_counts_nothing_and_is_told():
+    pooled, *each = compare_levels(settling(), "controller")
+    assert (pooled.at, pooled.comparison.n, pooled.word) == ({}, 8, "larger")
+    assert pooled.comparison.difference == pytest.approx(0.1, abs=5e-3)  # not a third of it
+    assert "8 pairs, neither has a value in 16 of 24 repetitions, at 2 of 3 levels" in pooled.sentence()
+    assert [one.word for one in each] == ["no value in either", "larger", "no value in either"]
+
+
+def test_never_against_never_has_no_number_anywhere():
+    lost = compare_levels(settling(), "controller")[1]
+    assert lost.cells == ["–", "–", "0", "–", "–", "no value in either"]
+    assert lost.short_cells == ["never", "–", "no value in either"]
+    assert [str(cell) for cell in lost.plain_cells[2:]] == ["0", "-", "-", "no value in either"]
+    assert lost.sentence() == "Rms: a and b have no value in any draw."
+    row = answer_rows([lost])[0]
+    assert np.isnan([row["difference"], row["effect"]]).all()
+    assert (row["n"], row["p"], row["low"]) == (0, None, None)
+
+
+def test_where_both_laws_fail_nothing_is_drawn_at_zero():
+    answers = compare_levels(settling(), "controller")
+    panel = difference_panel([(one.place, one) for one in answers], "gain")
+    for place in (1, 3):  # the levels without a value
+        for series in panel.series[1:]:
+            drawn = np.abs(series.x - place) < 0.4
+            assert not np.isfinite(series.y[drawn]).any()
 
 
 def test_repetitions_that_are_copies_of_each_other_count_once():

@@ -7,7 +7,7 @@ import pytest
 from matplotlib.colors import to_rgb
 
 from runner.reporting.charts import palette
-from runner.reporting.charts.static import COLOR_MARKS
+from runner.reporting.charts.palette import MARKS as COLOR_MARKS
 
 # Machado, Oliveira, Fernandes: A Physiologically-based Model for Simulation of Color Vision Deficiency, IEEE TVCG 2009,
 # table 1, severity 1.0; they act on linear red, green and blue.
@@ -37,6 +37,12 @@ def lab(rgb):
 
 def luminance(color):
     return float(TO_XYZ[1] @ linear(color))
+
+
+def test_the_first_four_colours_are_told_apart_in_a_grey_print():
+    """Fault of grey print: 33, 44, 53 and 57 of L*."""
+    greys = [lab(np.full(3, luminance(color)))[0] for color in palette.LIGHT[:4]]
+    assert min(abs(one - other) for one, other in itertools.combinations(greys, 2)) >= 12.0
 
 
 def test_no_two_colours_of_a_figure_for_print_share_their_grey_and_their_mark():

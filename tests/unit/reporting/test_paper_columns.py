@@ -78,7 +78,7 @@ def test_numbers_of_rows_with_units_have_a_unit_and_power_each():
     _, units, found = lay_out(Table("", ["metric", Column("unit", "unit"), *numbers("")], rows))
     assert [(cell.text, cell.unit) for cell in units.cells] == [
         ("mm", Unit("mm")),
-        ("10⁶ N² m² s", Unit("N^2 m^2 s", 6)),
+        ("10⁶\u00a0N²\u00a0m²\u00a0s", Unit("N^2 m^2 s", 6)),
         ("", Unit("1")),
     ]
     assert [cell.text for cell in found.cells] == ["2.00", "5.00", "0.500"]

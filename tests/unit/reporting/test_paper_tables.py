@@ -8,8 +8,9 @@ import pytest
 from support.paper_sweep import by_hand
 
 from runner.base.errors import RunnerError
-from runner.reporting.export.columns import Unit
+from runner.reporting.export.columns import Unit, lay_out
 from runner.reporting.export.columns import escape_markdown as markdown_escaped
+from runner.reporting.export.fitting import fit
 from runner.reporting.export.latex import escape_latex as latex_escaped
 from runner.reporting.export.latex import unit_macro
 from runner.reporting.export.paper_table import of_sweep
@@ -41,7 +42,8 @@ def markdown_rows(text):
 
 def test_markdown_has_a_row_for_each_combination_with_numbers_of_the_sweep():
     rows = markdown_rows(markdown(table()))
-    assert rows[0] == ["controller", "robot.payload.mass (kg)", "rms tracking error (mm)", "largest torque (N m)"]
+    assert rows[0] == ["controller", "robot.payload.mass (kg)", "rms tracking error (mm)",
+                       "largest torque (N\u00a0m)"]  # fmt: skip
     assert rows[1] == ["---", "---", "---:", "---:"]
     assert [row[:2] for row in rows[2:]] == [["computed_torque", "0.5"], ["computed_torque", "2"],
                                              ["operational_space", "0.5"], ["operational_space", "2"]]  # fmt: skip
@@ -196,3 +198,51 @@ def test_metrics_are_those_of_the_report_where_none_is_named():
 def test_unknown_metrics_are_refused():
     with pytest.raises(RunnerError, match=r"unknown metric 'peak_torq'\. Allowed: rms_"):
         table(metrics=["peak_torq"])
+
+
+def test_markdown_has_no_bracket_that_begins_a_formula():
+    """Fault 12: pandoc takes a bracket behind a backslash, as in R Markdown, for display mathematics."""
+    text = markdown(table())
+    assert r"\[" not in text
+    assert re.search(r"\| [\d.]+ \([\d.]+ to [\d.]+\) \|", text)
+    assert markdown_escaped("a[1] #2") == "a&#91;1&#93; &#35;2"
+
+
+@pytest.mark.parametrize("width", [84.0, 88.0, 180.0])
+def test_a_table_within_a_width_has_small_letters_and_titles_in_lines(width):
+    made = table(by=["controller"], where=["robot.payload.mass=0.5"])
+    text = made.written("latex", width)
+    body = "\n".join(line for line in text.splitlines() if not line.startswith("%"))
+    assert body.startswith(r"{\fontsize{8}{9.6}\selectfont\setlength{\tabcolsep}{")
+    assert body.rstrip().endswith(r"\end{tabular}}")
+    assert r"\begin{tabular}{@{}l S" in body
+    sound(re.sub(r"^\{.*%\n", "", body.replace(r"\end{tabular}}", r"\end{tabular}").replace("@{}", "")))
+    assert ("tracking error (" in body) == (width > 86.0)  # else the unit is in another line
+    typst = made.written("typst", width)
+    assert "text(8pt, table(" in typst
+    cells = re.findall(r'"([^"]*)"', typst.partition("table.hline(stroke")[2])
+    assert [cell for cell in cells if " " in cell] == []  # none is broken: a space is a no-break space
+    assert "(N\u00a0m)" in typst
+
+
+def test_a_table_that_does_not_fit_names_the_width_it_needs():
+    made = table(metrics=[*NAMES, "own_cost"])
+    with pytest.raises(RunnerError, match=r"--width: the table needs (\d+) mm, and 88 mm are allowed\.") as caught:
+        made.written("latex", 88.0)
+    needed = float(re.search(r"needs (\d+) mm", str(caught.value))[1])
+    assert made.written("latex", needed)
+    with pytest.raises(RunnerError, match="fewer metrics"):
+        made.written("typst", 88.0)
+
+
+def test_the_readmes_table_fits_a_column_by_the_letters_of_latex():
+    """Fault 5: 17 pt into the other column of an IEEE paper."""
+    columns = lay_out(table(by=["controller"], where=["robot.payload.mass=0.5"]).table)
+    fitted = fit(columns, 88.0, lambda each: [[cell.with_interval("[{}, {}]") for cell in each.cells]], at_edges=False)
+    assert 2.0 <= fitted.room <= 5.0
+    assert fitted.titles[0] == ["controller"]
+
+
+def test_without_a_width_letters_and_room_are_those_of_the_page():
+    assert "fontsize" not in latex(table())
+    assert "8pt" not in table().written("typst")

@@ -22,12 +22,30 @@ def test_a_curve_and_its_band_in_the_units_that_are_shown():
     y = np.array([0.001, np.nan, 0.003])
     figure = Curves("", [Panel("Tip", "time (s)", "error (m)", [Series("x", T, y, low=y - 0.001, high=y + 0.001)])])
     found = rows(curves_in_readable_units(figure))
-    assert found[0] == ["panel", "curve", "x axis", "x", "y axis", "y"]
-    assert found[1:4] == [["Tip", "x", "time (s)", "0.0", "error (mm)", "1.0"],
-                          ["Tip", "x", "time (s)", "1.0", "error (mm)", ""],
-                          ["Tip", "x", "time (s)", "2.0", "error (mm)", "3.0"]]  # fmt: skip
-    assert found[4][1] == "x (lower edge of its band)"
-    assert float(found[9][5]) == 4.0
+    assert found == [
+        ["panel", "curve", "x axis", "x", "y axis", "y", "low", "median", "high"],
+        ["Tip", "x", "time (s)", "0.0", "error (mm)", "", "0.0", "1.0", "2.0"],
+        ["Tip", "x", "time (s)", "1.0", "error (mm)", "", "", "", ""],
+        ["Tip", "x", "time (s)", "2.0", "error (mm)", "", "2.0", "3.0", "4.0"],
+    ]
+
+
+def test_what_is_beyond_every_number_is_an_empty_field_in_curves_and_maps():
+    """Question 19: `inf` in a column makes DuckDB read it as text."""
+    values = np.array([[np.inf, np.nan]])
+    cells = Map("M", "x", "y", ["1", "2"], ["a"], values, np.isnan(values))
+    assert [row[-1] for row in rows(Maps("", "error (m)", [cells]))[1:]] == ["", ""]
+    curve = Series("a", T, np.array([np.inf, 1.0, -np.inf]))
+    assert [row[5] for row in rows(Curves("", [Panel("", "x", "y", [curve])]))[1:]] == ["", "1.0", ""]
+
+
+def test_points_moved_apart_for_the_eye_are_written_at_their_place():
+    """Fault 3: 1.7 rad of plotting noise below an axis of 0.001 rad."""
+    dots = Series("a pair", np.repeat([0.0, 1.0], 3), np.arange(6.0), "points", shift=np.tile([-0.3, 0.0, 0.3], 2))
+    bars = Series("difference", T[:2], T[:2], "points", low=T[:2] - 1.0, high=T[:2] + 1.0)
+    found = rows(Curves("", [Panel("", "noise (rad)", "y", [dots, bars], x_names=["all", "0.001"])]))[1:]
+    assert [row[3] for row in found] == ["all"] * 3 + ["0.001"] * 3 + ["all", "0.001"]
+    assert [row[5:] for row in found[-2:]] == [["", "-1.0", "0.0", "1.0"], ["", "0.0", "1.0", "2.0"]]
 
 
 def test_no_point_is_left_out():
@@ -55,7 +73,7 @@ def test_a_map_has_a_row_for_each_cell():
 
 def test_the_columns_are_those_that_the_html_report_saves():
     script = (templates_dir() / "figure_tools.js").read_text()
-    assert '["panel", "curve", "x axis", "x", "y axis", "y"]' in script
+    assert '["panel", "curve", "x axis", "x", "y axis", "y", "low", "median", "high"]' in script
     assert '["panel", "x axis", "x", "y axis", "y", "quantity", "value"]' in script
 
 

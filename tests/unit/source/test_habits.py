@@ -75,7 +75,7 @@ def test_every_published_study_and_cited_author_is_in_the_citation():
     citation = read("CITATION.cff")
     assert citation["cff-version"] == "1.2.0"
     assert citation["license"] == PROJECT["license"]
-    assert "version" not in citation  # which is only in pyproject.toml
+    assert citation["version"] == PROJECT["version"]
     titles = {each["title"] for each in citation["references"]}
     for study in studies_dir().glob("*/study.yaml"):
         bibtex = yaml.safe_load(study.read_text(encoding="utf-8")).get("bibtex", "")

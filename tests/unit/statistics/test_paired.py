@@ -36,13 +36,22 @@ def test_the_effect_is_one_when_all_pairs_agree(sign, effect):
     assert compare_paired(a, a + sign * (1.0 + a)).effect == effect
 
 
-def test_two_values_beyond_every_number_are_equal_and_one_is_the_largest_difference():
+def test_two_values_beyond_every_number_are_no_pair_and_one_is_the_largest_difference():
     a = np.array([1.0, 2.0, 3.0, np.inf, 5.0, 6.0, 7.0, np.inf])
     b = np.array([2.0, 3.0, 4.0, np.inf, 6.0, 7.0, 8.0, 1.0])
     comparison = compare_paired(a, b)
-    assert comparison.differences.tolist() == [1.0, 1.0, 1.0, 0.0, 1.0, 1.0, 1.0, -np.inf]
-    assert comparison.lost == (2, 1)
+    assert comparison.differences.tolist() == [1.0, 1.0, 1.0, 1.0, 1.0, 1.0, -np.inf]
+    assert comparison.lost == (1, 0)
+    assert str(comparison.empty) == "neither has a value in 1 of 8 repetitions"
     assert comparison.difference == 1.0
+
+
+def test_without_any_pair_there_is_no_number():
+    never = np.full(8, np.inf)
+    comparison = compare_paired(never, never)
+    assert (comparison.n, comparison.medians, comparison.p_value) == (0, (np.inf, np.inf), None)
+    assert np.isnan([comparison.difference, comparison.effect]).all()
+    assert comparison.interval(0.05) is None
 
 
 def test_few_pairs_have_no_p_value_and_no_interval():
