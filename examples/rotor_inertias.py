@@ -1,7 +1,7 @@
 """Rotor inertias of a UR arm from a log of its controller: `python rotor_inertias.py LOG.csv URDF [PAYLOAD]`.
 
 The log is one of ur-rtde's recorder with all variables, of a motion of every joint. The controller's target_moment
-holds the torques of its own model: masses, rotors, and neither friction nor noise. PAYLOAD is in kg, at the flange.
+holds the torques of a rigid model with rotors, and neither friction nor noise. PAYLOAD is in kg, at the flange.
 """
 
 import sys

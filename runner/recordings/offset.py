@@ -6,7 +6,7 @@ v is the speed of a signal in the recording and w in the run, both after the sam
 are over the times that both cover. A norm counts at least half of its maximum over all lags, so that no lag with little
 motion is chosen.
 
-The correlation of a log that is cut off in motion has its maximum beside the right lag, as the ends weigh against it.
+The correlation of a log that is cut off in motion has its maximum next to the right lag, as the ends weigh against it.
 So each of its peaks is moved to the nearest minimum of the differences of positions, each less its mean difference, so
 that other zeros of the encoders have no effect. The peak with the smallest differences is chosen. Where several are
 alike, the arm is asked to rest before and after the run, if the run does; and then the lag that covers most is chosen.
@@ -123,7 +123,7 @@ def find_offset(
 
 
 def find_lag(t: FloatArray, measured: FloatArray, commanded: FloatArray) -> float:
-    """Return how much later a joint moves than its command, in s, by the least differences of positions.
+    """Return the time by which a joint moves later than its command, in s, by the least differences of positions.
 
     Args:
         t: Times, shape (N,), in s.
@@ -207,7 +207,7 @@ class _Match:
         return float(min(self._t[-1], self._run_t[-1] + start) - max(self._t[0], self._run_t[0] + start))
 
     def refined(self, start: float) -> tuple[float, float, bool]:
-        """Return the time near another at which positions differ least, their mean square, and if it is no minimum.
+        """Return the time near another at which positions differ least, their mean square, and if the search ended.
 
         Rows and signals are those of the first time, so that one time is compared with another over the same rows.
         """
@@ -229,7 +229,7 @@ class _Match:
         return start, square, True
 
     def whole(self, start: float) -> bool:
-        """Return whether the recording covers the whole of a run that rests at an end, or is as long as it is."""
+        """Return whether the recording covers a whole run that rests at an end or has the recording's length."""
         lasts, logged = self._run_t[-1] - self._run_t[0], self._t[-1] - self._t[0]
         known = bool(self._resting_ends()) or abs(logged - lasts) < _AS_LONG * lasts
         return bool(known and self.covered(start) > lasts - max(2.0 * self._near, _AS_LONG * lasts))
@@ -256,7 +256,7 @@ class _Match:
 
 
 def _chosen(match: _Match, starts: Sequence[float]) -> tuple[float, tuple[float, ...], bool]:
-    """Return when a run began, from some times to start from; other times that fit as well; if it is no minimum."""
+    """Return when a run began, from some times to start from; other times that fit as well; if the search ended."""
     quick = match.thinned()
     tried = [quick.refined(start) for start in starts]
     least = _ALIKE * max(_LEAST_SQUARE, min(square for _, square, _ in tried))

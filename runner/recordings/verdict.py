@@ -19,7 +19,7 @@ _ORDER = ("friction", "rotor inertia", "a payload", "a constant")
 
 
 def verdict_lines(found: RecordingComparison) -> Iterator[str]:
-    """Yield sentences: the accuracy of positions and torques, what explains the torques' differences, what is not told.
+    """Yield sentences: the accuracy of positions and torques, what explains the torques' differences, open questions.
 
     Args:
         found: The recording and the run.
@@ -28,9 +28,9 @@ def verdict_lines(found: RecordingComparison) -> Iterator[str]:
     said = [text for text in (_positions(found.residuals), _torques(found.residuals)) if text]
     yield f"Over {quantity(last - first, 's')} the model predicts {' and '.join(said)}."
     shares = explained(found)
-    causes = [f"{cause} alone {_per_cent(share)}" for cause, share in shares.items() if share >= _EXPLAINS]
+    causes = [f"{cause} {_per_cent(share)}" for cause, share in shares.items() if share >= _EXPLAINS]
     if causes:
-        yield f"Of the squares of the torques' differences, {', '.join(causes).replace('alone', 'alone explains', 1)}."
+        yield f"Share of the torques' squared differences that a single cause explains: {', '.join(causes)}."
     elif shares:
         yield f"None of {', '.join(shares)} explains a tenth of the torques' differences (squares)."
     untold = list(_untold(found))
@@ -70,7 +70,7 @@ def _per_cent(share: float) -> str:
 
 
 def explained(found: RecordingComparison) -> Mapping[str, float]:
-    """Return the share of the torques' differences that each cause alone explains, in squares; empty without torques.
+    """Return the share of the torques' squared differences that each single cause explains; empty without torques.
 
     Differences are those of the recorded torques from the model's at the recorded motion, behind a low-pass, each joint
     divided by the rms of its torque. The causes are viscous and Coulomb friction, another inertia of the rotor and a
