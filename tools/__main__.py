@@ -10,6 +10,7 @@ NAMES = (
     "friction_coverage",
     "made_up_logs",
     "answers",
+    "scope",
     "kills",
     "processors",
     "mutants",
