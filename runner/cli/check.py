@@ -3,7 +3,8 @@
 Without a baseline, the spec of the run is compared, and no repetition may break a bound. With
 `--max-failure-probability` the whole 95 % interval of the probability of failing must be below P. `--save-baseline`
 writes the baseline of a sweep, and `--baseline` then lists the changes. If FILE has bands, `--save-baseline` sets their
-ends from a sweep over the seed. Exit code 1: the check failed.
+ends from a sweep over the seed. `--require-scope` checks that the answer of a challenge holds for all variations of
+some classes. Exit code 1: the check failed.
 
 Example: runner check latest --baseline baseline.yaml --format markdown
 """
@@ -16,7 +17,7 @@ from typing import TYPE_CHECKING
 from runner.base.errors import RunnerError
 from runner.base.quantities import plain_number
 from runner.base.sanitize import one_line
-from runner.cli.arguments import Parser, Stored
+from runner.cli.arguments import Names, Parser, Stored
 from runner.reporting.table import Cell, Number, Table, numbers, terminal
 
 if TYPE_CHECKING:
@@ -26,6 +27,9 @@ if TYPE_CHECKING:
     from runner.store.baselines import Band, Bands, Finding
     from runner.store.cells import Move, SweepBaseline
 
+CLASSES = ("numbers", "equivalent", "conditions", "fairness")
+"""Classes of variations of a challenge; a test compares them with the families."""
+
 _MOVE_COLUMNS = ("cell", "metric", *numbers("was", "is", "moved"), "beyond the seeds' spread")
 _DIGITS = 3  # significant digits of the number of repetitions that are still needed
 _SAYS = {"kept": "good", "broken": "broken", "untold": "too few repetitions to tell"}
@@ -33,8 +37,8 @@ _SAYS = {"kept": "good", "broken": "broken", "untold": "too few repetitions to t
 
 def add_arguments(parser: Parser) -> None:
     """Add the arguments."""
-    stored = Stored("run", "sweep", "tuning")
-    parser.add_argument("folder", type=stored, metavar="DIR", help="folder of a run or a sweep, or latest")
+    stored = Stored("run", "sweep", "tuning", "challenge")
+    parser.add_argument("folder", type=stored, metavar="DIR", help="folder of a run, sweep or challenge; or latest")
     parser.add_shared(
         baseline="bands or a saved sweep (default: the spec, or the experiment's)",
         save_baseline="write a baseline, or set the bands in FILE",
@@ -44,6 +48,12 @@ def add_arguments(parser: Parser) -> None:
         type=_probability,
         metavar="P",
         help="highest allowed probability that a repetition breaks a bound of the spec",
+    )
+    parser.add_argument(
+        "--require-scope",
+        type=Names(tuple(CLASSES)),
+        metavar="A,B",
+        help=f"challenge: classes that the answer must hold for ({', '.join(CLASSES)})",
     )
     parser.add_formats(("text", "markdown"), "format of the changes: text or markdown (default: text)", most=1)
 
@@ -57,6 +67,8 @@ def run(options: argparse.Namespace) -> int:
     from runner.store.kinds import kind_of
     from runner.sweeps.rounding import Sensitivity, find_sensitive
 
+    if options.require_scope is not None or kind_of(options.folder) == "challenge":
+        return _check_scope(options)
     if options.save_baseline:
         if options.baseline or options.max_failure_probability is not None or options.format:
             others = "--baseline, --max-failure-probability or --format"
@@ -84,6 +96,24 @@ def run(options: argparse.Namespace) -> int:
         cells = [] if kind_of(options.folder) == "run" else cell_names(store.open_sweep(options.folder))
         return _check_spec(runs, cells, options.max_failure_probability)
     return _check_bands(runs, baseline)
+
+
+def _check_scope(options: argparse.Namespace) -> int:
+    """Print what turns the answer of a challenge in some classes, or is not known; return 1 if there is anything."""
+    from runner.reporting.challenge.page import turns_answer
+    from runner.store.kinds import kind_of
+    from runner.sweeps.challenge.stored import open_challenge
+
+    if kind_of(options.folder) != "challenge":
+        options.parser.error("--require-scope: not a challenge. `runner challenge RESULT` makes one.")
+    if not options.require_scope or options.baseline or options.save_baseline or options.format:
+        options.parser.error("a challenge is checked with --require-scope A,B alone.")
+    reasons = turns_answer(open_challenge(options.folder), options.require_scope)
+    named = ", ".join(options.require_scope)
+    for text in reasons:
+        print(one_line(text))
+    print(f"not shown to hold for {named}: {len(reasons)}" if reasons else f"good: the answer holds for {named}")
+    return 1 if reasons else 0
 
 
 def _probability(text: str) -> float:
