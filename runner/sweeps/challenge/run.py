@@ -36,7 +36,7 @@ from runner.sweeps.challenge.changed import Changed, changed_keys
 from runner.sweeps.challenge.drawn import Drawn, compare_drawn
 from runner.sweeps.challenge.families import Change, Family, LeftOutError, Value
 from runner.sweeps.challenge.question import Case, Question, check_case
-from runner.sweeps.challenge.stored import Challenge, Found, Turning, place_of
+from runner.sweeps.challenge.stored import Challenge, Found, Turning, open_challenge, place_of
 from runner.sweeps.challenge.table import LeftOut, Variation, list_variations
 from runner.sweeps.drawn import draws_nothing
 from runner.sweeps.job import check_job
@@ -94,7 +94,7 @@ def challenge(
             made = replace(_Runner(case, made, bench, budget).run(), ended=True, seconds=time.monotonic() - began)
         finally:
             made.write(bench.jobs)
-    return made
+    return open_challenge(folder)
 
 
 def _checked(plan: Changed, place: int, variation: Variation) -> Variation:
