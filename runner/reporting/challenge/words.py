@@ -41,7 +41,7 @@ KEPT: Sequence[Word] = ("holds", "holds, weaker", "does not appear")
 """Words of a variation that does not change the answer."""
 
 _BAD: Sequence[Word] = ("neither works", "only one works", "cannot be asked")
-_NAMED = 4  # variations that a sentence names
+_NAMED = 8  # families that a sentence names
 
 
 def answer_text(made: Challenge) -> str:
@@ -91,7 +91,8 @@ def short_scope(made: Challenge) -> str:
     kept = [kind for kind in CLASSES if _all_kept(made, kind)]
     turned = [one for one in made.found if one.judged and one.judged.word in TOLD and one.judged.word not in KEPT]
     held = f"it holds for all tried {' and '.join(CLASSES[kind] for kind in kept)}" if kept else ""
-    ends = f"it ends or turns with {few([one.variation.label for one in turned], _NAMED, '; ')}" if turned else ""
+    names = list(dict.fromkeys(TITLES.get(one.variation.family, one.variation.family) for one in turned))
+    ends = f"it ends or turns with {few(names, _NAMED)}" if turned else ""
     return f"Challenged: {'; '.join(filter(None, (held, ends))) or 'no variation is told'}."
 
 
@@ -147,7 +148,7 @@ def _of_class(made: Challenge, kind: Class) -> Iterator[str]:
     rest = [one for one in found if one.variation.family not in whole]
     kept = [one for one in rest if _word(one) in KEPT and _word(one) != "holds, weaker"]
     if kept:
-        yield f"Holds with {_labels(kept)}."
+        yield f"Holds with {_labels(made, kept)}."
     for word, text in (
         ("holds, weaker", "Weaker with"),
         ("vanishes", "Ends with"),
@@ -158,11 +159,11 @@ def _of_class(made: Challenge, kind: Class) -> Iterator[str]:
     ):
         some = [one for one in rest if _word(one) == word]
         if some:
-            yield f"{text} {_labels(some)}.{_turned(made, some)}"
+            yield f"{text} {_labels(made, some)}.{_turned(made, some)}"
     for side in (0, 1):
         some = [one for one in rest if one.judged and one.judged.works == side]
         if some:
-            yield f"Only {made.question.sides[side].name} works with {_labels(some)}."
+            yield f"Only {made.question.sides[side].name} works with {_labels(made, some)}."
     untold = [one for one in rest if _word(one) == "not told"]
     if untold:
         yield f"Not told with {'; '.join(map(_untold, untold))}."
@@ -210,8 +211,15 @@ def _untold(one: Found) -> str:
     return f"{one.variation.label}{f' ({number(float(needed), 2)} pairs would tell)' if needed else ''}"
 
 
-def _labels(some: Sequence[Found]) -> str:
-    return "; ".join(one.variation.label for one in some)
+def _labels(made: Challenge, some: Sequence[Found]) -> str:
+    """Return what is changed; the title of a family if all its variations, two or more, are among them."""
+    sizes = {name: sum(one.variation.family == name for one in made.found) for name in TITLES}
+    texts = []
+    for one in some:
+        name = one.variation.family
+        whole = 1 < sizes.get(name, 0) == sum(other.variation.family == name for other in some)
+        texts.append(f"{TITLES[name]} ({sizes[name]} of {sizes[name]})" if whole else one.variation.label)
+    return "; ".join(dict.fromkeys(texts))
 
 
 def _word(one: Found) -> str:

@@ -13,6 +13,7 @@ from runner.base.quantities import quantity
 from runner.base.sanitize import few, one_line
 from runner.reporting.answer_map import make_map
 from runner.reporting.answers import Answer
+from runner.reporting.challenge.beside import scope_line
 from runner.reporting.charts.figure import spaced_indices
 from runner.reporting.comparison.pairs import label_text
 from runner.reporting.comparison.sweeps import NOISE_ALONE, noise_alone
@@ -169,7 +170,7 @@ def _abstract(subject: Subject, sweep: Sweep, answers: Sequence[Answer], first: 
     few = too_few(subject) if subject.ranked and subject.axes else ""
     texts += [few] if few else [*first, *causes(subject, answers)]
     if answers:
-        texts += filter(None, [made_equal(subject)])
+        texts += filter(None, [scope_line(answers, [sweep.folder]), made_equal(subject)])
     if subject.ranked and subject.axes:
         texts += effects.describe_shared_variation(subject)
     rules = [f"{rule} ({count} of {cells} cells)" for rule, count, *_ in measurements.caveats_by_rule()]
