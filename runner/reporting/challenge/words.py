@@ -93,7 +93,8 @@ def short_scope(made: Challenge) -> str:
     held = f"it holds for all tried {' and '.join(CLASSES[kind] for kind in kept)}" if kept else ""
     names = list(dict.fromkeys(TITLES.get(one.variation.family, one.variation.family) for one in turned))
     ends = f"it ends or turns with {few(names, _NAMED)}" if turned else ""
-    return f"Challenged: {'; '.join(filter(None, (held, ends))) or 'no variation is told'}."
+    at = f" at {made.question.at}" if made.question.left else ""
+    return f"Challenged{at}: {'; '.join(filter(None, (held, ends))) or 'no variation is told'}."
 
 
 def variations_table(made: Challenge) -> Table:
@@ -193,9 +194,9 @@ def _turned(made: Challenge, some: Sequence[Found]) -> str:
 
 def _span(turn: Turn) -> str:
     if turn.between is not None:
-        return f"between {number(turn.between[0])} and {number(turn.between[1])} of the asked value"
+        return f"between the values {number(turn.between[0])} and {number(turn.between[1])}"
     ends = ["below" if turn.low is None else number(turn.low), "above" if turn.high is None else number(turn.high)]
-    return f"95 % span of its factor {ends[0]} to {ends[1]}"
+    return f"95 % span of its value {ends[0]} to {ends[1]}"
 
 
 def turning_rows(made: Challenge) -> Iterator[tuple[Turning, str, str]]:

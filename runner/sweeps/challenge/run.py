@@ -29,6 +29,7 @@ from runner.statistics.scope import (
 )
 from runner.statistics.turning import PAIRS, POINTS, Turn, find_turns
 from runner.store.kinds import note
+from runner.store.seal import DamagedError
 from runner.sweeps.at_work import at_work
 from runner.sweeps.challenge.bench import Bench
 from runner.sweeps.challenge.budget import Budget
@@ -86,15 +87,25 @@ def challenge(
     with at_work(folder, exclusive=True) as name:
         keys = changed_keys([*keys, "seed=", "repetitions="])
         bench = Bench(case, keys, folder, outputs, engine, name)
-        if not made.is_stored:
+        has_ended = _has_ended(made)
+        if not has_ended:
             made.write(bench.jobs)
         note(folder)
         bench.end = math.inf if budget.seconds is None else began + budget.seconds
         try:
             made = replace(_Runner(case, made, bench, budget).run(), ended=True, seconds=time.monotonic() - began)
         finally:
-            made.write(bench.jobs)
+            if made.ended or not has_ended:  # an interruption keeps the words of an earlier command
+                made.write(bench.jobs)
     return open_challenge(folder)
+
+
+def _has_ended(made: Challenge) -> bool:
+    """Return True if an earlier command has ended the challenge."""
+    try:
+        return made.is_stored and open_challenge(made.folder).ended
+    except DamagedError:
+        return False
 
 
 def _checked(plan: Changed, place: int, variation: Variation) -> Variation:
@@ -211,12 +222,12 @@ class _Runner:
 
         def ask(values: Sequence[float]) -> list[FloatArray]:
             changes: list[Change] = []
-            for value in values:
-                try:
+            try:
+                for value in values:
                     changes.append(replace(family.change(self._case, value), exact=variation.exact))
-                except LeftOutError:
-                    return []
-            draws = self._bench.draw(changes, PAIRS, 1, self._bench.turning_block)
+                draws = self._bench.draw(changes, PAIRS, 1, self._bench.turning_block)
+            except (LeftOutError, ConfigError):  # a value between two that can be simulated cannot
+                return []
             tried = [compare_drawn(a, b, self._question.error) for a, b in draws]
             for value, one in zip(values, tried, strict=False):
                 (judged,) = judge([one], asked, ALPHA)
@@ -226,7 +237,8 @@ class _Runner:
         turns = find_turns(ask, points, allowed)
         if len(vanished) < 2:
             return None
-        labels = [family.change(self._case, _rounded(turn)).label for turn in turns]
+        values = [turn.between[1] if turn.between else _rounded(turn) for turn in turns]
+        labels = [family.change(self._case, value).label for value in values]
         ordered = sorted(vanished, key=lambda value: abs(value - end))
         run = next((number for number, value in enumerate(ordered) if not vanished[value]), len(ordered))
         first = ordered[run - 1] if run and not turns else None
@@ -256,7 +268,8 @@ class _Runner:
                 changes += [replace(family.change(self._case, value), exact=variation.exact)
                             for value in self._points(variation, family)[0]]  # fmt: skip
         if changes and self._budget.seconds is None:
-            self._bench.draw(changes, PAIRS, 1, self._bench.turning_block)
+            with contextlib.suppress(ConfigError):  # then each search finds its own
+                self._bench.draw(changes, PAIRS, 1, self._bench.turning_block)
 
     def _keep_traces(self, made: Challenge) -> None:
         """Simulate the variations with the smallest and the largest effect again, with their traces."""

@@ -1,5 +1,6 @@
 """List of the variations of a challenge: values of `conf/challenge/`, changed by `--vary` and `--without`."""
 
+import re
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
@@ -16,6 +17,7 @@ from runner.sweeps.challenge.question import Case
 GROUP = "challenge"
 _STANDARD = "standard"
 _MOST = 200  # variations
+_COMMA = re.compile(r",(?![^\[]*\])")  # outside of a list such as [1,2,3]
 
 Values = Mapping[str, Sequence[Value]]
 
@@ -124,7 +126,7 @@ def change_values(values: Values, vary: Sequence[str], without: Sequence[str]) -
     found = {name: list(some) for name, some in values.items() if name not in without}
     for text in vary:
         name, _, listed = text.partition("=")
-        given = [_value(part.strip()) for part in listed.split(",") if part.strip()]
+        given = [_value(part.strip()) for part in _COMMA.split(listed) if part.strip()]
         if not name or not given:
             raise RunnerError(f"--vary: no values ({text!r}). Allowed: KEY=A,B, such as duration=0.7,3.")
         if "." not in name and name not in FAMILIES and name != "gravity":

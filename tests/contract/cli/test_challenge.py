@@ -135,7 +135,7 @@ def test_a_budget_cuts_and_the_sentence_says_so(cli, sweep):
 
 
 @pytest.mark.costs(3)
-def test_an_interrupted_challenge_is_continued_with_the_runs(cli, sweep, monkeypatch):
+def test_an_interrupted_challenge_is_continued_with_the_stored_runs(cli, sweep, monkeypatch):
     from runner.sweeps.challenge import run as module
 
     words = ("challenge", sweep, "--by", "controller.natural_frequency", *FEW, "--budget", 1, "-j", 1)
@@ -187,6 +187,7 @@ def test_what_does_not_apply_is_left_out_with_its_reason(sweep):
     assert left == []
     assert [one.value for one in found if one.family == "noise"] == [0.5]
     assert not [one for one in found if one.family == "torque_limit"]
+    assert change_values({}, ["a.b=[1,2],[3,4]", "gravity=9"], []) == {"a.b": ["[1,2]", "[3,4]"], "gravity": [9.0]}
     order = [list(CLASSES).index(one.kind) for one in found]
     assert order == sorted(order)
 
