@@ -1,7 +1,7 @@
 """Error rates of the words of a challenge and of turning values, on drawn values without simulation.
 
 Targets: of problems of equal laws at most 5 % say "holds", "appears" or "reversed" of any variation; of problems with a
-true difference and little power at most 5 % say "vanishes"; of variations without an effect at least 90 % are told by
+true difference and little power at most 5 % say "vanishes"; at least 90 % of the variations without an effect vanish by
 24 pairs if pairs scatter by 5 % and the asked effect is 28 %; at least 93 % of the spans contain the turning value, and
 their median length is at most 1.3 times 2 t s / (slope sqrt(n)).
 """

@@ -2,7 +2,7 @@
 
 The question is that of a sweep (its levels), of two sweeps or runs, or of a tuning. The asked case comes first, on
 fresh seeds. The variations of `conf/challenge` follow: numerical choices, equivalent choices, conditions, and the gain
-of one side alone. The same command continues an interrupted challenge.
+of only one side. The same command continues an interrupted challenge.
 
 Example: runner challenge latest --vary "duration=0.7,3" --without payload
 """

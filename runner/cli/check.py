@@ -3,8 +3,7 @@
 Without a baseline, the spec of the run is compared, and no repetition may break a bound. With
 `--max-failure-probability` the whole 95 % interval of the probability of failing must be below P. `--save-baseline`
 writes the baseline of a sweep, and `--baseline` then lists the changes. If FILE has bands, `--save-baseline` sets their
-ends from a sweep over the seed. `--require-scope` checks that the answer of a challenge holds for all variations of
-some classes. Exit code 1: the check failed.
+ends from a sweep over the seed. Exit code 1: the check failed.
 
 Example: runner check latest --baseline baseline.yaml --format markdown
 """
@@ -38,7 +37,7 @@ _SAYS = {"kept": "good", "broken": "broken", "untold": "too few repetitions to t
 def add_arguments(parser: Parser) -> None:
     """Add the arguments."""
     stored = Stored("run", "sweep", "tuning", "challenge")
-    parser.add_argument("folder", type=stored, metavar="DIR", help="folder of a run, sweep or challenge; or latest")
+    parser.add_argument("folder", type=stored, metavar="DIR", help="a run, sweep or challenge; or latest")
     parser.add_shared(
         baseline="bands or a saved sweep (default: the spec, or the experiment's)",
         save_baseline="write a baseline, or set the bands in FILE",
@@ -53,7 +52,7 @@ def add_arguments(parser: Parser) -> None:
         "--require-scope",
         type=Names(tuple(CLASSES)),
         metavar="A,B",
-        help=f"challenge: classes that the answer must hold for ({', '.join(CLASSES)})",
+        help="challenge: classes for which its answer must hold",
     )
     parser.add_formats(("text", "markdown"), "format of the changes: text or markdown (default: text)", most=1)
 
@@ -107,7 +106,7 @@ def _check_scope(options: argparse.Namespace) -> int:
     if kind_of(options.folder) != "challenge":
         options.parser.error("--require-scope: not a challenge. `runner challenge RESULT` makes one.")
     if not options.require_scope or options.baseline or options.save_baseline or options.format:
-        options.parser.error("a challenge is checked with --require-scope A,B alone.")
+        options.parser.error("a challenge is checked only with --require-scope A,B.")
     reasons = turns_answer(open_challenge(options.folder), options.require_scope)
     named = ", ".join(options.require_scope)
     for text in reasons:

@@ -405,5 +405,5 @@ def _print_cells(ended: "Ended", axes: "Sequence[Axis]") -> None:
 
 
 def _name(ended: "Ended") -> str:
-    """Return what a next command calls a sweep: its folder, or `latest` in the usual outputs folder."""
+    """Return the name of a sweep for a next command: its folder, or `latest` in the usual outputs folder."""
     return WORD if ended.outputs.resolve() == outputs_dir().resolve() else str(ended.folder)

@@ -4,7 +4,7 @@ The question is whether B has a smaller or larger metric than A. Its answer on f
 variation is a paired comparison of A and B with one choice changed. The rules are those of docs/statistics.md; the
 first one that applies gives the word.
 
-Variations are tested together by Holm's procedure, both directions at once. Those that are not told go on with more
+Variations are tested together by Holm's procedure, both directions at once. Those that are not shown go on with more
 pairs, at most LOOKS times, with an equal share of the level for each look. Hypotheses that are decided leave the
 family: without a false rejection so far, all true hypotheses are still in it.
 """
@@ -21,7 +21,7 @@ from runner.statistics.paired import Comparison, SignedRanks, fewest_pairs, holm
 
 Word = Literal[
     "cannot be asked", "neither works", "only one works", "reversed", "vanishes", "holds, weaker", "holds", "appears",
-    "does not appear", "not told",
+    "does not appear", "not shown",
 ]  # fmt: skip
 """Words of a variation, in the order of their rules; "appears" and "does not appear" if the asked answer is none."""
 
@@ -66,7 +66,7 @@ class Judged:
         high: Upper end.
         pairs: Number of pairs.
         works: 0 if only A works, 1 if only B works; None otherwise.
-        needed: Number of pairs that would tell; None if they tell, or if the number is unknown.
+        needed: Number of pairs that would tell; None if they decide, or if the number is unknown.
         log_ratio: Logarithm of the ratio B / A with its interval, for a picture; None if it is unknown.
     """
 
@@ -121,7 +121,7 @@ Ask = Callable[[Sequence[int], int], Sequence[Tried]]
 
 
 def judge_in_looks(ask: Ask, variations: int, asked: Effect) -> list[Judged]:
-    """Return the words of all variations; those that are not told go on with more pairs.
+    """Return the words of all variations; those that are not shown go on with more pairs.
 
     Args:
         ask: Function that simulates some variations; it may return fewer than asked for, then the rest ends here.
@@ -133,7 +133,7 @@ def judge_in_looks(ask: Ask, variations: int, asked: Effect) -> list[Judged]:
     for pairs in pairs_of_looks(first_pairs(variations)):
         tried = ask(left, pairs)
         words |= dict(zip(left, judge(tried, asked), strict=False))
-        left = [place for place in left[: len(tried)] if words[place].word == "not told"]
+        left = [place for place in left[: len(tried)] if words[place].word == "not shown"]
         if not left:
             break
     return [words[place] for place in sorted(words)]
@@ -143,7 +143,7 @@ def judge(tried: Sequence[Tried], asked: Effect, level: float = ALPHA / LOOKS) -
     """Return the word of each variation of a family at one look.
 
     Args:
-        tried: The variations that no earlier look has told.
+        tried: The variations that no earlier look has decided.
         asked: The asked effect.
         level: Probability of one or more false rejections in this look.
     """
@@ -205,7 +205,7 @@ def _judge_one(found: Comparison, asked: Effect, is_shown: bool, level: float) -
     sign = conclusion_sign(found, is_shown, asked.is_fraction) if counts else 0
     word = _word(sign, low, high, asked)
     needed = None
-    if word == "not told" and not found.exact:
+    if word == "not shown" and not found.exact:
         needed = found.pairs_needed(max(abs(size), asked.margin) * scale, level)
         needed = None if needed is None else max(needed, found.n + 1)
     return Judged(word, size, low, high, found.n, needed=needed, log_ratio=_log_ratio(found, level))
@@ -215,7 +215,7 @@ def _word(sign: int, low: float | None, high: float | None, asked: Effect) -> Wo
     """Return the word of a sign and the ends of an interval, both relative to the scale."""
     within = low is not None and high is not None and -asked.margin <= low and high <= asked.margin
     if not asked.sign:
-        return "appears" if sign else "does not appear" if within else "not told"
+        return "appears" if sign else "does not appear" if within else "not shown"
     if sign == -asked.sign:
         return "reversed"
     if within:
@@ -223,7 +223,7 @@ def _word(sign: int, low: float | None, high: float | None, asked: Effect) -> Wo
     if sign and low is not None and high is not None:
         farthest = max(asked.sign * low, asked.sign * high)
         return "holds, weaker" if farthest < _HALF * abs(asked.size) else "holds"
-    return "holds" if sign else "not told"
+    return "holds" if sign else "not shown"
 
 
 def _log_ratio(found: Comparison, level: float) -> tuple[float, float, float] | None:

@@ -53,7 +53,7 @@ def find_turns(ask: Ask, points: Sequence[float], allowed: Sequence[float] | Non
     """Return all turning values between some points.
 
     Runs at the points and at the roots of the estimate and of both ends of its interval. A point with a failed run ends
-    a bracket: no root is looked for beside it.
+    a bracket: no root is looked for next to it.
 
     Args:
         ask: Function that simulates some values of the choice.

@@ -1,4 +1,4 @@
-"""Scope beside a conclusion: the sentence of its challenge, or the command that makes one."""
+"""Scope of a conclusion: the sentence of its challenge, or the command that makes one."""
 
 import shlex
 from collections.abc import Sequence

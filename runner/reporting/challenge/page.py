@@ -25,7 +25,7 @@ from runner.sweeps.challenge.families import CLASSES
 from runner.sweeps.challenge.stored import Challenge, Found
 
 _COLORS = {
-    "holds": 0, "holds, weaker": 5, "does not appear": 0, "vanishes": 3, "appears": 1, "reversed": 1, "not told": 4,
+    "holds": 0, "holds, weaker": 5, "does not appear": 0, "vanishes": 3, "appears": 1, "reversed": 1, "not shown": 4,
 }  # fmt: skip
 _GREY = 7
 _GAP = 1.0  # between classes, in variations

@@ -27,7 +27,7 @@ TITLES = {
     "period": "another control period",
     "model_error": "wrong masses in the model",
     "gain": "other gains of both",
-    "gain_of_one": "another gain of one alone",
+    "gain_of_one": "another gain of only one",
 }
 """Titles of the families in sentences."""
 
@@ -85,7 +85,7 @@ def challenge_answer(made: Challenge) -> str:
 
 
 def short_scope(made: Challenge) -> str:
-    """Return the scope in one sentence, to stand beside a conclusion."""
+    """Return the scope in one sentence, to follow a conclusion."""
     if not made.came_back:
         return "Challenged: the answer does not come back on fresh seeds."
     kept = [kind for kind in CLASSES if _all_kept(made, kind)]
@@ -94,7 +94,7 @@ def short_scope(made: Challenge) -> str:
     names = list(dict.fromkeys(TITLES.get(one.variation.family, one.variation.family) for one in turned))
     ends = f"it ends or turns with {few(names, _NAMED)}" if turned else ""
     at = f" at {made.question.at}" if made.question.left else ""
-    return f"Challenged{at}: {'; '.join(filter(None, (held, ends))) or 'no variation is told'}."
+    return f"Challenged{at}: {'; '.join(filter(None, (held, ends))) or 'no variation is decided'}."
 
 
 def variations_table(made: Challenge) -> Table:
@@ -165,9 +165,9 @@ def _of_class(made: Challenge, kind: Class) -> Iterator[str]:
         some = [one for one in rest if one.judged and one.judged.works == side]
         if some:
             yield f"Only {made.question.sides[side].name} works with {_labels(made, some)}."
-    untold = [one for one in rest if _word(one) == "not told"]
+    untold = [one for one in rest if _word(one) == "not shown"]
     if untold:
-        yield f"Not told with {'; '.join(map(_untold, untold))}."
+        yield f"Not shown with {'; '.join(map(_untold, untold))}."
 
 
 def _settled(made: Challenge, found: Sequence[Found]) -> Iterator[str]:
@@ -213,7 +213,7 @@ def _untold(one: Found) -> str:
 
 
 def _labels(made: Challenge, some: Sequence[Found]) -> str:
-    """Return what is changed; the title of a family if all its variations, two or more, are among them."""
+    """Return the changes of some variations; the title of a family if all its variations, two or more, are among them."""
     sizes = {name: sum(one.variation.family == name for one in made.found) for name in TITLES}
     texts = []
     for one in some:

@@ -211,7 +211,7 @@ def _gain_of(place: int) -> Callable[[Case, Value], Change]:
     def change(case: Case, value: Value) -> Change:
         both = _scaled(case, "controller.natural_frequency", value)
         name = case.question.sides[place].name
-        label = f"{number(float(value))} times the main gain of {name} alone"
+        label = f"{number(float(value))} times the main gain of only {name}"
         return Change(label, both[0] if place == 0 else [], both[1] if place == 1 else [])
 
     return change

@@ -134,7 +134,7 @@ def open_challenge(folder: Path) -> Challenge:
     """Open a stored challenge.
 
     Raises:
-        DamagedError: if the folder is no challenge, or is damaged.
+        DamagedError: if the folder is not a challenge, or is damaged.
     """
     path = folder / _FILE
     content = read_json(path, _REMEDY)

@@ -29,7 +29,7 @@ class _Table(StrictModel):
         numbers: Those of the numerical choices.
         equivalent: Those of the equivalent choices.
         conditions: Those of the conditions.
-        fairness: Those of changes of one side alone.
+        fairness: Those of changes of only one side.
     """
 
     numbers: dict[str, list[float | int | str]]
@@ -99,7 +99,7 @@ def read_values(config_dirs: Sequence[Path]) -> dict[str, list[Value]]:
     try:
         table = _Table.model_validate(read_yaml(path.read_text(encoding="utf-8"), path, CONFIG))
     except (OSError, ValueError, ValidationError) as error:
-        raise ConfigError(f"{path}: it is no table of variations: {error}") from None
+        raise ConfigError(f"{path}: it is not a table of variations: {error}") from None
     found: dict[str, list[Value]] = {}
     for kind in CLASSES:
         for name, values in getattr(table, kind).items():

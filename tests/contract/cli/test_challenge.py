@@ -66,8 +66,8 @@ def test_words_of_a_difference_that_gains_make(ended):
     assert ended.fresh.pairs == first_pairs(len(found))
     assert ended.question.sign == -1  # twice the natural frequency follows better
     assert {found[label].word for label in found if "step" in label or "noise" in label} == {"holds"}
-    half = "0.5 times the main gain of controller.natural_frequency=40 alone"
-    quarter = "0.25 times the main gain of controller.natural_frequency=40 alone"
+    half = "0.5 times the main gain of only controller.natural_frequency=40"
+    quarter = "0.25 times the main gain of only controller.natural_frequency=40"
     assert found[half].word == "vanishes"  # both sides are the same law
     assert found[quarter].word == "reversed"
     assert found["a motion of 0.25 s"].word == "neither works"  # neither gain follows so fast a motion
@@ -115,7 +115,7 @@ def test_check_of_the_scope(cli, ended):
     assert (ending.code, ending.out) == (0, "good: the answer holds for numbers\n")
     ending = cli("check", ended.folder, "--require-scope", "numbers,fairness")
     assert ending.code == 1
-    assert "alone: reversed" in ending.out
+    assert "natural_frequency=40: reversed" in ending.out
     for words in (["--require-scope", "luck"], [], ["--require-scope", "numbers", "--baseline", "x.yaml"]):
         assert cli("check", ended.folder, *words).code == 2
 
@@ -208,7 +208,7 @@ def test_a_damaged_challenge_is_told(cli, ended, tmp_path):
         ("numbers: {step: [0.5]}\nequivalent: {}\nconditions: {}\nfairness: {}\n", ""),
         ("numbers: {gain: [0.5]}\nequivalent: {}\nconditions: {}\nfairness: {}\n", "gain is in numbers. Allowed: in"),
         ("numbers: {stop: [0.5]}\nequivalent: {}\nconditions: {}\nfairness: {}\n", "unknown family 'stop'"),
-        ("numbers: []\n", "no table of variations"),
+        ("numbers: []\n", "not a table of variations"),
     ],
 )
 def test_a_table_of_your_own(tmp_path, text, said):

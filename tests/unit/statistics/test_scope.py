@@ -60,15 +60,15 @@ def test_words_of_a_question_without_a_difference(effect, expected):
 
 def test_wide_scatter_is_not_told_and_says_how_many_pairs_would():
     (judged,) = judge([Tried(pairs_of(-0.1, 0.3))], ASKED, ALPHA)
-    assert judged.word == "not told"
+    assert judged.word == "not shown"
     assert judged.needed > PAIRS
     again = [word(pairs_of(-0.1, 0.3, judged.needed, seed)) for seed in range(20)]
-    assert again.count("not told") < 10  # counted for a power of 80 % from one pilot
+    assert again.count("not shown") < 10  # counted for a power of 80 % from one pilot
 
 
 def test_an_effect_below_the_integration_error_does_not_hold():
     assert word(pairs_of(-0.28, 1e-4, error=0.27)) == "holds"
-    assert word(pairs_of(-0.28, 1e-4, error=0.29)) == "not told"
+    assert word(pairs_of(-0.28, 1e-4, error=0.29)) == "not shown"
 
 
 def test_sides_that_do_not_work_come_first():
@@ -85,7 +85,7 @@ def test_sides_that_do_not_work_come_first():
 
 def test_exact_runs_are_compared_without_a_test():
     assert word(pairs_of(-0.28, count=1, exact=True)) == "holds"
-    assert word(pairs_of(-0.28, count=1, exact=True, error=0.3)) == "not told"
+    assert word(pairs_of(-0.28, count=1, exact=True, error=0.3)) == "not shown"
     assert word(pairs_of(0.0, count=1, exact=True)) == "vanishes"
 
 
@@ -104,7 +104,7 @@ def test_a_scale_of_the_asked_case_serves_metrics_that_may_be_zero():
 def test_the_family_makes_each_test_stricter():
     found = pairs_of(-0.28, 0.1, 8)  # all of eight pairs have one sign: p = 2 / 2^8
     assert word(found) == "holds"
-    assert {one.word for one in judge([Tried(found)] * 20, ASKED)} == {"not told"}
+    assert {one.word for one in judge([Tried(found)] * 20, ASKED)} == {"not shown"}
 
 
 def test_first_pairs_can_decide_each_variation():
@@ -128,7 +128,7 @@ def test_only_variations_that_are_not_told_go_on():
     assert 0 not in asked_for[1][0]
     assert words[0].word == "holds"
     assert words[0].pairs == 12
-    assert words[2].word == "not told"
+    assert words[2].word == "not shown"
 
 
 def test_a_budget_ends_the_looks_early():
