@@ -18,6 +18,7 @@ from runner.base.quantities import plain_number
 from runner.base.sanitize import one_line
 from runner.cli.arguments import Names, Parser, Stored
 from runner.reporting.table import Cell, Number, Table, numbers, terminal
+from runner.sweeps.challenge.question import CLASSES
 
 if TYPE_CHECKING:
     from runner.statistics.proportion import Share
@@ -25,9 +26,6 @@ if TYPE_CHECKING:
     from runner.store import Run, Sweep
     from runner.store.baselines import Band, Bands, Finding
     from runner.store.cells import Move, SweepBaseline
-
-CLASSES = ("numbers", "equivalent", "conditions", "fairness")
-"""Classes of variations of a challenge; a test compares them with the families."""
 
 _MOVE_COLUMNS = ("cell", "metric", *numbers("was", "is", "moved"), "beyond the seeds' spread")
 _DIGITS = 3  # significant digits of the number of repetitions that are still needed
@@ -46,15 +44,15 @@ def add_arguments(parser: Parser) -> None:
         "--max-failure-probability",
         type=_probability,
         metavar="P",
-        help="highest allowed probability that a repetition breaks a bound of the spec",
+        help="highest probability that a repetition fails",
     )
     parser.add_argument(
         "--require-scope",
-        type=Names(tuple(CLASSES)),
+        type=Names(list(CLASSES)),
         metavar="A,B",
-        help="challenge: classes for which its answer must hold",
+        help="challenge: classes that it must hold for",
     )
-    parser.add_formats(("text", "markdown"), "format of the changes: text or markdown (default: text)", most=1)
+    parser.add_formats(("text", "markdown"), "text or markdown (default: text)", most=1)
 
 
 def run(options: argparse.Namespace) -> int:

@@ -21,7 +21,7 @@ from runner.reporting.markup import literal
 from runner.reporting.metric_titles import capital, title
 from runner.reporting.sweep.report import run_command
 from runner.store.sweep import Sweep
-from runner.sweeps.challenge.families import CLASSES
+from runner.sweeps.challenge.question import CLASSES
 from runner.sweeps.challenge.stored import Challenge, Found
 
 _COLORS = {

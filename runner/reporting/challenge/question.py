@@ -18,7 +18,8 @@ from runner.store.finished import Finished
 from runner.store.kinds import kind_of, open_stored, outputs_of
 from runner.store.run import Run
 from runner.store.sweep import Sweep
-from runner.sweeps.challenge.question import Question, Side, own_overrides
+from runner.sweeps.challenge.case import own_overrides
+from runner.sweeps.challenge.question import Question, Side
 from runner.sweeps.finer_step import work_out_sweep
 from runner.sweeps.measurements import Measurements, check_metrics, limit_sweep, measure_sweep
 from runner.sweeps.question import find_question

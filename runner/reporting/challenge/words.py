@@ -8,7 +8,7 @@ from runner.reporting.metric_titles import capital, title
 from runner.reporting.table import Table, numbers
 from runner.statistics.scope import TOLD, Word
 from runner.statistics.turning import Turn
-from runner.sweeps.challenge.families import CLASSES, Class
+from runner.sweeps.challenge.question import CLASSES, Class
 from runner.sweeps.challenge.stored import Challenge, Found, Turning
 
 TITLES = {
@@ -213,7 +213,7 @@ def _untold(one: Found) -> str:
 
 
 def _labels(made: Challenge, some: Sequence[Found]) -> str:
-    """Return the changes of some variations; the title of a family if all its variations, two or more, are among them."""
+    """Return the changes of some variations; the title of a family if all its variations are among them."""
     sizes = {name: sum(one.variation.family == name for one in made.found) for name in TITLES}
     texts = []
     for one in some:

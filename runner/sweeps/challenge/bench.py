@@ -11,9 +11,9 @@ from runner.config.compose.composer import Composer
 from runner.config.compose.files import outputs_override
 from runner.statistics.scope import LOOKS
 from runner.store.finished import Finished
+from runner.sweeps.challenge.case import Case
 from runner.sweeps.challenge.changed import Cell, Changed
 from runner.sweeps.challenge.drawn import Drawn, join, read_drawn
-from runner.sweeps.challenge.question import Case
 from runner.sweeps.check import check
 from runner.sweeps.run import Engine, make_missing, make_rules
 from runner.sweeps.writer import TraceKeeping

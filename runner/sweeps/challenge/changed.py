@@ -6,7 +6,7 @@ from runner.base.dotted_keys import get, split_override
 from runner.config.compose.composer import Composer
 from runner.config.compose.files import groups
 from runner.store.axes import override_value
-from runner.sweeps.challenge.question import Case
+from runner.sweeps.challenge.case import Case
 from runner.sweeps.plan import Item, Listed
 
 Cell = tuple[int, tuple[str, ...]]

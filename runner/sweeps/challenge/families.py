@@ -4,24 +4,15 @@ import math
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from itertools import chain
-from typing import Any, Literal
+from typing import Any
 
 from runner.base.quantities import number
 from runner.plants import PLANTS
 from runner.store.axes import override_value
+from runner.sweeps.challenge.case import Case
 from runner.sweeps.challenge.goals import ends_of
-from runner.sweeps.challenge.question import Case
+from runner.sweeps.challenge.question import Class, Value, Variation
 
-Class = Literal["numbers", "equivalent", "conditions", "fairness"]
-CLASSES: Mapping[Class, str] = {
-    "numbers": "numerical choices",
-    "equivalent": "equivalent choices",
-    "conditions": "conditions",
-    "fairness": "fairness",
-}
-"""Classes of variations in the order of the budget, with their titles. They are never added up."""
-
-Value = float | str
 _TENTH = 0.1  # of the difference: integration error that a finer step must reach
 
 
@@ -241,6 +232,12 @@ FAMILIES: Mapping[str, Sequence[Family]] = {
     "gain_of_one": [Family("fairness", _gain_of(place), "controller.natural_frequency", 1.0) for place in (0, 1)],
 }
 """The families by name; a family of one side has an entry for each side."""
+
+
+def family_of(variation: Variation) -> Family | None:
+    """Return the family of a variation; None for a key of the user's."""
+    found = FAMILIES.get(variation.family, ())
+    return found[variation.place] if found else None
 
 
 def _both(label: str, overrides: Sequence[str]) -> Change:

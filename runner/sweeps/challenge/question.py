@@ -1,23 +1,20 @@
-"""Question of a challenge: a metric, two sides and their configs, as a stored result asks it."""
+"""Question of a challenge as a stored result asks it, and its variations."""
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
-from functools import cached_property
 from pathlib import Path
-from typing import Any
+from typing import Literal
 
-from runner.base.arrays import FloatArray
-from runner.base.dotted_keys import get
-from runner.base.errors import ConfigError
-from runner.config.compose.composer import Composer
-from runner.config.run import RunConfig
-from runner.store.axes import is_simulated
-from runner.sweeps.challenge.goals import other_goals
-from runner.sweeps.job import RunJob, check_job
-from runner.sweeps.plan import Item, Listed
+Class = Literal["numbers", "equivalent", "conditions", "fairness"]
+CLASSES: Mapping[Class, str] = {
+    "numbers": "numerical choices",
+    "equivalent": "equivalent choices",
+    "conditions": "conditions",
+    "fairness": "fairness",
+}
+"""Classes of variations in the order of the budget, with their titles. They are never added up."""
 
-DRAWN = ("seed", "repetitions", "outputs")
-"""Keys that a challenge sets itself."""
+Value = float | str
 
 
 @dataclass(frozen=True)
@@ -72,49 +69,44 @@ class Question:
 
 
 @dataclass(frozen=True)
-class Case:
-    """A question with the checked configs of both sides.
+class Variation:
+    """One change of the asked case.
 
     Attributes:
-        question: The question.
-        configs: Checked config of A and of B.
+        kind: Its class.
+        family: Name of its family; for a key of the user's, the key.
+        value: Its value.
+        label: What is changed, in words.
+        a: Overrides that A gets.
+        b: Overrides that B gets.
+        place: Place of its family among those of that name.
+        exact: True if neither side draws anything.
     """
 
-    question: Question
-    configs: tuple[RunConfig, RunConfig]
-
-    def values(self, key: str) -> tuple[Any, Any]:
-        """Return the resolved value of a dotted key in both configs; None where it is missing."""
-        first, second = (get(config.resolved, key) for config in self.configs)
-        return first, second
-
-    @cached_property
-    def goals(self) -> list[FloatArray]:
-        """Other goals of the motion of A; see `other_goals`."""
-        return other_goals(self.configs[0])
-
-    @property
-    def peak(self) -> float:
-        """The largest torque of both sides in the stored result, in N m; 0 if it is unknown."""
-        found = [side.medians.get("peak_torque", 0.0) for side in self.question.sides]
-        return max(found)
+    kind: Class
+    family: str
+    value: Value
+    label: str
+    a: Sequence[str]
+    b: Sequence[str]
+    place: int = 0
+    exact: bool = False
 
 
-def own_overrides(overrides: Sequence[str]) -> tuple[str, ...]:
-    """Return the overrides of a stored run that a challenge keeps."""
-    return tuple(text for text in overrides if text.partition("=")[0] not in DRAWN and is_simulated(text))
+@dataclass(frozen=True)
+class LeftOut:
+    """A variation that does not apply or cannot be simulated.
 
-
-def check_case(question: Question) -> Case:
-    """Check the configs of both sides.
-
-    Raises:
-        ConfigError: if a side can no longer be composed.
+    Attributes:
+        family: Name of its family.
+        value: Its value.
+        reason: Why it is left out.
+        kind: Its class.
+        applies: True if it applies, but its config is rejected.
     """
-    items = {str(place): Item(tuple(side.overrides)) for place, side in enumerate(question.sides)}
-    plan = Listed(items, (), Composer(question.config_dirs))
-    jobs = [check_job(plan.composed(cell)) for cell in range(len(plan))]
-    runs = [job.config for job in jobs if isinstance(job, RunJob)]
-    if len(runs) != len(question.sides):
-        raise ConfigError("challenge: a side is a calibration. Allowed: runs")
-    return Case(question, (runs[0], runs[1]))
+
+    family: str
+    value: Value
+    reason: str
+    kind: Class
+    applies: bool = False

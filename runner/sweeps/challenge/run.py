@@ -33,12 +33,13 @@ from runner.store.seal import DamagedError
 from runner.sweeps.at_work import at_work
 from runner.sweeps.challenge.bench import Bench
 from runner.sweeps.challenge.budget import Budget
+from runner.sweeps.challenge.case import Case, check_case
 from runner.sweeps.challenge.changed import Changed, changed_keys
 from runner.sweeps.challenge.drawn import Drawn, compare_drawn
-from runner.sweeps.challenge.families import Change, Family, LeftOutError, Value
-from runner.sweeps.challenge.question import Case, Question, check_case
+from runner.sweeps.challenge.families import Change, Family, LeftOutError, family_of
+from runner.sweeps.challenge.question import LeftOut, Question, Value, Variation
 from runner.sweeps.challenge.stored import Challenge, Found, Turning, open_challenge, place_of
-from runner.sweeps.challenge.table import LeftOut, Variation, list_variations
+from runner.sweeps.challenge.table import list_variations
 from runner.sweeps.drawn import draws_nothing
 from runner.sweeps.job import check_job
 from runner.sweeps.run import Engine
@@ -213,7 +214,7 @@ class _Runner:
     def _turning(self, made: Challenge, place: int, asked: Effect) -> Turning | None:
         """Return the turning values between the asked case and a variation; None if the time is over."""
         variation = made.found[place].variation
-        family = variation.of_family
+        family = family_of(variation)
         if family is None or family.neutral is None:
             return None
         points, allowed = self._points(variation, family)
@@ -261,7 +262,7 @@ class _Runner:
         """Simulate the first points of all continuous choices together."""
         changes: list[Change] = []
         for variation in (self._made.found[place].variation for place in places):
-            family = variation.of_family
+            family = family_of(variation)
             if family is None or family.neutral is None or family.discrete is not None:
                 continue
             with contextlib.suppress(LeftOutError):
@@ -286,7 +287,7 @@ def _ends(made: Challenge) -> list[int]:
     """Return the nearest variation of each family and direction that reverses the answer, else that ends it."""
     nearest: dict[tuple[str, int, bool], int] = {}
     for place, one in enumerate(made.found):
-        family = one.variation.of_family
+        family = family_of(one.variation)
         if one.judged is None or one.judged.word not in _ENDS or family is None or family.neutral is None:
             continue
         if not isinstance(one.variation.value, int | float):

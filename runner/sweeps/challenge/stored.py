@@ -14,8 +14,7 @@ from runner.store.atomic import refuse_links, write_atomically
 from runner.store.kinds import KINDS
 from runner.store.seal import DamagedError, read_json, sealed_json
 from runner.store.sweep import write_jobs
-from runner.sweeps.challenge.question import Question, Side
-from runner.sweeps.challenge.table import LeftOut, Variation
+from runner.sweeps.challenge.question import LeftOut, Question, Side, Variation
 
 _FILE = KINDS["challenge"].files[0]
 _REMEDY = "the challenge's command writes it again"

@@ -2,7 +2,6 @@
 
 import re
 from collections.abc import Callable, Iterator, Mapping, Sequence
-from dataclasses import dataclass
 from pathlib import Path
 
 from pydantic import ValidationError
@@ -11,8 +10,9 @@ from runner.base.bounded_yaml import CONFIG, read_yaml
 from runner.base.errors import ConfigError, RunnerError, unknown
 from runner.base.paths import conf_dir
 from runner.schema.model import StrictModel
-from runner.sweeps.challenge.families import CLASSES, FAMILIES, Change, Class, Family, LeftOutError, Value
-from runner.sweeps.challenge.question import Case
+from runner.sweeps.challenge.case import Case
+from runner.sweeps.challenge.families import FAMILIES, Change, Family, LeftOutError
+from runner.sweeps.challenge.question import CLASSES, LeftOut, Value, Variation
 
 GROUP = "challenge"
 _STANDARD = "standard"
@@ -36,56 +36,6 @@ class _Table(StrictModel):
     equivalent: dict[str, list[float | int | str]]
     conditions: dict[str, list[float | int | str]]
     fairness: dict[str, list[float | int | str]]
-
-
-@dataclass(frozen=True)
-class Variation:
-    """One change of the asked case.
-
-    Attributes:
-        kind: Its class.
-        family: Name of its family; for a key of the user's, the key.
-        value: Its value.
-        label: What is changed, in words.
-        a: Overrides that A gets.
-        b: Overrides that B gets.
-        place: Place of its family among those of that name.
-        exact: True if neither side draws anything.
-    """
-
-    kind: Class
-    family: str
-    value: Value
-    label: str
-    a: Sequence[str]
-    b: Sequence[str]
-    place: int = 0
-    exact: bool = False
-
-    @property
-    def of_family(self) -> Family | None:
-        """The family; None for a key of the user's."""
-        found = FAMILIES.get(self.family, ())
-        return found[self.place] if found else None
-
-
-@dataclass(frozen=True)
-class LeftOut:
-    """A variation that does not apply or cannot be simulated.
-
-    Attributes:
-        family: Name of its family.
-        value: Its value.
-        reason: Why it is left out.
-        kind: Its class.
-        applies: True if it applies, but its config is rejected.
-    """
-
-    family: str
-    value: Value
-    reason: str
-    kind: Class
-    applies: bool = False
 
 
 def read_values(config_dirs: Sequence[Path]) -> dict[str, list[Value]]:
