@@ -152,6 +152,7 @@ def test_an_interrupted_challenge_is_continued_with_the_stored_runs(cli, sweep, 
     assert "2 runs, 2 of them stored already" in ending.err
 
 
+@pytest.mark.costs(2)
 @pytest.mark.parametrize(
     ("words", "said"),
     [
