@@ -6,15 +6,17 @@
     'ok'
 
 `run`, `sweep`, `tune` and `calibrate` do what the commands do, `report` writes a report, `compare` compares runs or
-sweeps; `open_run`, `open_sweep` and `open_tuning` open what is stored. docs/python.md shows them at work.
+sweeps, `challenge` asks for which choices an answer holds; `open_run`, `open_sweep`, `open_tuning` and
+`open_challenge` open what is stored. docs/python.md shows them at work.
 """
 
 from importlib import import_module
 from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
+    from runner.api.challenge import Challenge, challenge
     from runner.api.commands import calibrate, run, sweep, tune
-    from runner.api.results import Report, compare, open_run, open_sweep, open_tuning, report
+    from runner.api.results import Report, compare, open_challenge, open_run, open_sweep, open_tuning, report
     from runner.api.run import Run
     from runner.api.sweep import Sweep
     from runner.api.tuning import Tuning
@@ -24,6 +26,7 @@ if TYPE_CHECKING:
 
 __all__ = [
     "Calibration",
+    "Challenge",
     "Metric",
     "Report",
     "Run",
@@ -31,7 +34,9 @@ __all__ = [
     "Sweep",
     "Tuning",
     "calibrate",
+    "challenge",
     "compare",
+    "open_challenge",
     "open_run",
     "open_sweep",
     "open_tuning",
@@ -42,6 +47,7 @@ __all__ = [
 ]
 _PLACES = {
     "Calibration": "runner.store",
+    "Challenge": "runner.api.challenge",
     "Metric": "runner.store.record",
     "Report": "runner.api.results",
     "Run": "runner.api.run",
@@ -49,7 +55,9 @@ _PLACES = {
     "Sweep": "runner.api.sweep",
     "Tuning": "runner.api.tuning",
     "calibrate": "runner.api.commands",
+    "challenge": "runner.api.challenge",
     "compare": "runner.api.results",
+    "open_challenge": "runner.api.results",
     "open_run": "runner.api.results",
     "open_sweep": "runner.api.results",
     "open_tuning": "runner.api.results",

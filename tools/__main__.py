@@ -11,6 +11,7 @@ NAMES = (
     "log_offsets",
     "made_up_logs",
     "answers",
+    "scope",
     "kills",
     "processors",
     "mutants",

@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING
 from runner import store
 from runner.api import page
 from runner.api.boundary import public, public_class
+from runner.api.challenge import Challenge
 from runner.api.run import Run
 from runner.api.sweep import Sweep
 from runner.api.tuning import Tuning
@@ -19,8 +20,8 @@ if TYPE_CHECKING:
     from runner.api.comparison import Comparison
 
 Comparable = Run | Sweep | str | Path
-Thing = Run | Sweep | Tuning | str | Path
-_KINDS: Sequence[Kind] = ("run", "sweep", "tuning")
+Thing = Run | Sweep | Tuning | Challenge | str | Path
+_KINDS: Sequence[Kind] = ("run", "sweep", "tuning", "challenge")
 
 
 @public
@@ -70,6 +71,21 @@ def open_tuning(folder: str | Path) -> Tuning:
         RunnerError: if the folder is not a tuning, or is damaged.
     """
     return public_class(Tuning, study.open_tuning(find_folder(folder, ("tuning",))))
+
+
+@public
+def open_challenge(folder: str | Path) -> Challenge:
+    """Open a stored challenge.
+
+    Args:
+        folder: Folder of the challenge in `outputs/challenges`; "latest" for the one simulated or reused last.
+
+    Raises:
+        RunnerError: if the folder is not a challenge, or is damaged.
+    """
+    from runner.sweeps.challenge import stored
+
+    return public_class(Challenge, stored.open_challenge(find_folder(folder, ("challenge",))))
 
 
 @public
@@ -141,14 +157,14 @@ class Report:
 def report(
     things: Thing | Sequence[Thing], formats: str | Sequence[str] = ("html", "pdf"), metrics: str | Sequence[str] = ()
 ) -> Report:
-    """Write the report on runs, sweeps or a tuning, as `runner report` does.
+    """Write the report on runs, sweeps, a tuning or a challenge, as `runner report` does.
 
         >>> made = runner.report(runner.run(robot="macro", duration=0.1), formats="html")
         >>> made.html.name
         'report.html'
 
     Args:
-        things: Runs, sweeps or a tuning, or their folders; several sweeps are compared with each other.
+        things: Runs, sweeps, a tuning or a challenge, or their folders; several sweeps are compared with each other.
         formats: "html", "pdf" or both.
         metrics: Metrics for the comparison in a sweep; the first one ranks it. If empty, the report chooses them.
 

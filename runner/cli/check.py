@@ -16,8 +16,9 @@ from typing import TYPE_CHECKING
 from runner.base.errors import RunnerError
 from runner.base.quantities import plain_number
 from runner.base.sanitize import one_line
-from runner.cli.arguments import Parser, Stored
+from runner.cli.arguments import Names, Parser, Stored
 from runner.reporting.table import Cell, Number, Table, numbers, terminal
+from runner.sweeps.challenge.question import CLASSES
 
 if TYPE_CHECKING:
     from runner.statistics.proportion import Share
@@ -33,8 +34,8 @@ _SAYS = {"kept": "good", "broken": "broken", "untold": "too few repetitions to t
 
 def add_arguments(parser: Parser) -> None:
     """Add the arguments."""
-    stored = Stored("run", "sweep", "tuning")
-    parser.add_argument("folder", type=stored, metavar="DIR", help="folder of a run or a sweep, or latest")
+    stored = Stored("run", "sweep", "tuning", "challenge")
+    parser.add_argument("folder", type=stored, metavar="DIR", help="a run, sweep or challenge; or latest")
     parser.add_shared(
         baseline="bands or a saved sweep (default: the spec, or the experiment's)",
         save_baseline="write a baseline, or set the bands in FILE",
@@ -43,9 +44,15 @@ def add_arguments(parser: Parser) -> None:
         "--max-failure-probability",
         type=_probability,
         metavar="P",
-        help="highest allowed probability that a repetition breaks a bound of the spec",
+        help="highest probability that a repetition fails",
     )
-    parser.add_formats(("text", "markdown"), "format of the changes: text or markdown (default: text)", most=1)
+    parser.add_argument(
+        "--require-scope",
+        type=Names(list(CLASSES)),
+        metavar="A,B",
+        help="challenge: classes that it must hold for",
+    )
+    parser.add_formats(("text", "markdown"), "text or markdown (default: text)", most=1)
 
 
 def run(options: argparse.Namespace) -> int:
@@ -57,6 +64,8 @@ def run(options: argparse.Namespace) -> int:
     from runner.store.kinds import kind_of
     from runner.sweeps.rounding import Sensitivity, find_sensitive
 
+    if options.require_scope is not None or kind_of(options.folder) == "challenge":
+        return _check_scope(options)
     if options.save_baseline:
         if options.baseline or options.max_failure_probability is not None or options.format:
             others = "--baseline, --max-failure-probability or --format"
@@ -84,6 +93,24 @@ def run(options: argparse.Namespace) -> int:
         cells = [] if kind_of(options.folder) == "run" else cell_names(store.open_sweep(options.folder))
         return _check_spec(runs, cells, options.max_failure_probability)
     return _check_bands(runs, baseline)
+
+
+def _check_scope(options: argparse.Namespace) -> int:
+    """Print what turns the answer of a challenge in some classes, or is not known; return 1 if there is anything."""
+    from runner.reporting.challenge.page import turns_answer
+    from runner.store.kinds import kind_of
+    from runner.sweeps.challenge.stored import open_challenge
+
+    if kind_of(options.folder) != "challenge":
+        options.parser.error("--require-scope: not a challenge. `runner challenge RESULT` makes one.")
+    if not options.require_scope or options.baseline or options.save_baseline or options.format:
+        options.parser.error("a challenge is checked only with --require-scope A,B.")
+    reasons = turns_answer(open_challenge(options.folder), options.require_scope)
+    named = ", ".join(options.require_scope)
+    for text in reasons:
+        print(one_line(text))
+    print(f"not shown to hold for {named}: {len(reasons)}" if reasons else f"good: the answer holds for {named}")
+    return 1 if reasons else 0
 
 
 def _probability(text: str) -> float:

@@ -23,6 +23,7 @@ if TYPE_CHECKING:
     from runner.recordings.compare import RecordingComparison
     from runner.store import Run, Sweep
 
+_CHALLENGED = 2  # results that one challenge compares
 _LOGS = (".csv", ".tsv", ".txt", ".log", ".parquet", ".zip", ".bag", ".mcap", ".db3")  # a missing file is called a log
 
 
@@ -61,7 +62,14 @@ def run(options: Namespace) -> int:
 
 
 def _compare(options: Namespace) -> None:
-    from runner.reporting.comparison.sweeps import answer_rows, compare_levels, compare_sweeps, measure_compared
+    from runner.reporting.challenge.beside import scope_line
+    from runner.reporting.comparison.sweeps import (
+        answer_rows,
+        compare_levels,
+        compare_runs,
+        compare_sweeps,
+        measure_compared,
+    )
     from runner.reporting.comparison.text import level_lines, run_lines, sweep_lines
     from runner.reporting.sweep.subject import main_metrics
     from runner.store.axes import find_axis
@@ -106,7 +114,14 @@ def _compare(options: Namespace) -> None:
         check_metrics(metrics, [name for side in sides for name in side.values])
         texts = ["\n".join(run_lines((runs[0], run), (first, other), metrics, everything))
                  for run, other in zip(runs[1:], others, strict=True)]  # fmt: skip
-    print(_json_text(answer_rows(answers)) if options.json else "\n\n".join(texts))
+        answers = [answer for other in others for answer in compare_runs(first, other, metrics)[0]]
+    if options.json:
+        print(_json_text(answer_rows(answers)))
+        return
+    print("\n\n".join(texts))
+    words = [*map(str, options.folders), *(["--metrics", options.metrics[0]] if options.metrics else [])]
+    if len(things) <= _CHALLENGED and (line := scope_line(answers, [thing.folder for thing in things], words)):
+        print(one_line(line))
 
 
 def _json_text(rows: Sequence[Mapping[str, Any]]) -> str:

@@ -26,10 +26,11 @@ from runner.config.compose.files import groups
 
 GROUPS = {
     "Run experiments": ("run", "sweep", "status", "tune", "calibrate"),
-    "Look at results": ("results", "report", "table", "figures", "sensitivity"),
-    "Compare and check": ("compare", "check", "verify"),
-    "Reproduce papers": ("reproduce", "study", "audit", "benchmark"),
-    "Robots and controllers": ("list", "schema", "doctor", "example"),
+    "Question a result": ("compare", "challenge", "check", "sensitivity", "verify"),
+    "Look at results": ("results", "report", "table", "figures"),
+    "Real arms": ("doctor",),
+    "Papers": ("reproduce", "study", "audit", "benchmark"),
+    "Set up": ("list", "schema", "example"),
 }
 """Names of the commands, by what a person wants to do."""
 COMMANDS = tuple(name for names in GROUPS.values() for name in names)

@@ -1,4 +1,4 @@
-"""Write a report on runs, sweeps or a tuning.
+"""Write a report on runs, sweeps, a tuning or a challenge.
 
 Example: runner report latest --format html
 """
@@ -15,9 +15,9 @@ def add_arguments(parser: Parser) -> None:
     parser.add_argument(
         "folders",
         nargs="+",
-        type=Stored("run", "sweep", "tuning"),
+        type=Stored("run", "sweep", "tuning", "challenge"),
         metavar="DIR",
-        help="runs, sweeps or one tuning; or latest",
+        help="runs, sweeps, one tuning or one challenge; or latest",
     )
     parser.add_formats(FORMATS, "html, pdf or both (default: html,pdf)")
     parser.add_shared(

@@ -370,7 +370,8 @@ def _print_cells(ended: "Ended", axes: "Sequence[Axis]") -> None:
     """Print the numbers of runs, the answer of the sweep, and the next commands."""
     from runner import store
     from runner.base.machine import describe_mixture
-    from runner.reporting.sweep.question import in_short
+    from runner.reporting.challenge.beside import scope_line
+    from runner.reporting.sweep.question import find_answers, in_short
     from runner.reporting.sweep.subject import choose
     from runner.sweeps.finer_step import work_out_sweep
     from runner.sweeps.measurements import measure_sweep
@@ -381,20 +382,19 @@ def _print_cells(ended: "Ended", axes: "Sequence[Axis]") -> None:
     if ended.part:
         runs = f"part {ended.part}: {runs}"
     text = f"{runs}: {made} made, {ended.stored} stored before, {failed or 'none'} of them failed"
-    answer, spec = "", ""
+    answer, scope, spec = "", "", ""
     if len(ended.names) <= _MOST_RANKED and not (ended.part or ended.left or failed == len(ended.names)):
         sweep = store.open_sweep(ended.folder)
         work_out_sweep(sweep)
         subject = choose(measure_sweep(sweep))
-        answer = in_short(subject)
+        answer, scope = in_short(subject), scope_line(find_answers(subject), [ended.folder], [_name(ended)])
         if sweep.spec:
             from runner.reporting.sweep.spec import summary  # imports charts, which takes long
 
             spec = summary(subject, sweep)
-    for line in filter(None, (text, describe_mixture(ended.ends.machines), answer, spec)):
+    for line in filter(None, (text, describe_mixture(ended.ends.machines), answer, scope, spec)):
         print(one_line(f"runner: {line}"), file=sys.stderr)
-    here = ended.outputs.resolve() == outputs_dir().resolve()
-    name = WORD if here else str(ended.folder)
+    name = _name(ended)
     if ended.part:
         print(one_line(f"runner: next: `runner status {name}`"), file=sys.stderr)
         return
@@ -402,3 +402,8 @@ def _print_cells(ended: "Ended", axes: "Sequence[Axis]") -> None:
     by = "" if find_question(axes) else f" --by {swept[0]}" if swept else None
     compare = "" if by is None else f", `runner compare {name}{by}`"
     print(one_line(f"runner: next: `runner report {name}`, `runner table {name}`{compare}"), file=sys.stderr)
+
+
+def _name(ended: "Ended") -> str:
+    """Return the name of a sweep for a next command: its folder, or `latest` in the usual outputs folder."""
+    return WORD if ended.outputs.resolve() == outputs_dir().resolve() else str(ended.folder)

@@ -1,10 +1,9 @@
 """Verdict on a comparison: "smaller", "larger", or the reason for neither, and its one set of numbers.
 
-A difference is reported if its p-value, corrected by Holm's procedure for all comparisons of its metric, is below 5 %.
-It must also exceed the integration error in it, and 2 % of the larger of the two medians (0.02 of a fraction).
-Verdict, interval and p follow from one test. The interval has the level at which Holm's procedure decided, so that it
-excludes zero exactly if the corrected p is below 5 %. If nothing is drawn, the difference is exact and not tested. A
-torque at its limit is not compared.
+A difference is reported by the rule of `statistics.conclusion`, with p corrected by Holm's procedure for all
+comparisons of its metric. Verdict, interval and p follow from one test. The interval has the level at which Holm's
+procedure decided, so that it excludes zero exactly if the corrected p is below 5 %. If nothing is drawn, the difference
+is exact and not tested. A torque at its limit is not compared.
 """
 
 import math
@@ -22,12 +21,7 @@ from runner.reporting.limits import find_limit
 from runner.reporting.metric_titles import capital, title
 from runner.reporting.table import Cell, Number
 from runner.statistics import SMALLEST_SAMPLE, Comparison, fewest_pairs, holm, holm_levels
-
-ALPHA = 0.05
-"""Probability of one or more false differences among the comparisons of a metric."""
-
-SHARE = 0.02
-"""Share of the larger median, or a fraction itself, up to which a difference does not count."""
+from runner.statistics.conclusion import ALPHA, SHARE, conclusion_sign, larger_median, least_difference
 
 PAIRS = (
     "A pair is one draw of both: the same seed and repetition, cells that share a draw by their mean. Differences are "
@@ -123,7 +117,7 @@ class Asked:
 
     @property
     def _larger(self) -> float:
-        return max((abs(median) for median in self.comparison.medians if np.isfinite(median)), default=0.0)
+        return larger_median(self.comparison)
 
     @property
     def full_names(self) -> tuple[str, str]:
@@ -164,8 +158,7 @@ class Answer(Asked):
     @property
     def least(self) -> float:
         """The difference from which on it is an answer, in the metric's unit."""
-        share = SHARE if "fraction" in self.metric else SHARE * self._larger
-        return max(share, ROUNDING, self.comparison.error or 0.0)
+        return least_difference(self.comparison, "fraction" in self.metric)
 
     @property
     def equal(self) -> bool:
@@ -177,9 +170,8 @@ class Answer(Asked):
     @property
     def sign(self) -> int:
         """-1 where the second may be called smaller, 1 where larger, 0 where neither may be said."""
-        sure = self.comparison.exact or (self.p_value is not None and self.p_value < ALPHA)
-        holds = sure and not self.limit and abs(self.comparison.difference) > self.least
-        return int(np.sign(self.comparison.difference)) if holds else 0
+        shown = self.p_value is not None and self.p_value < ALPHA
+        return 0 if self.limit else conclusion_sign(self.comparison, shown, "fraction" in self.metric)
 
     @property
     def smaller(self) -> str:

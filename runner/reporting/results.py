@@ -10,6 +10,7 @@ from runner.base import progress
 from runner.base.errors import RunnerError, StoreError
 from runner.base.quantities import with_powers
 from runner.base.sanitize import one_line
+from runner.reporting.challenge.words import challenge_answer
 from runner.reporting.figures import still_motion
 from runner.reporting.metric_titles import key_metrics
 from runner.reporting.render import asset, data_uri, script_policy
@@ -23,6 +24,7 @@ from runner.store.atomic import write_atomically
 from runner.store.kinds import KINDS
 from runner.store.listing import Entry, list_entries, runs_of_sweeps
 from runner.store.seal import SchemaError
+from runner.sweeps.challenge.stored import open_challenge
 from runner.sweeps.measurements import measure_sweep
 from runner.sweeps.status import find_status
 from runner.sweeps.tuning.study import open_tuning
@@ -149,11 +151,13 @@ def _sweep_row(entry: Entry, sweep: Sweep) -> Row:
     words = sweep.command.partition(" -m ")[2] or sweep.command
     state = "unfinished" if status.left else "good"
     with_caveats = sum(count > 0 for count in status.caveats)
-    many = len(sweep.hashes) > _MOST_CELLS or status.left
+    many = len(sweep.hashes) > _MOST_CELLS or status.left or entry.kind == "challenge"
     measured = None if many else measure_sweep(sweep)
     times = f" x {measured.repetitions}" if measured else ""
     if entry.kind == "tuning":
         answer = summary_of_tuning(open_tuning(entry.folder))
+    elif entry.kind == "challenge":
+        answer = challenge_answer(open_challenge(entry.folder))
     else:
         answer = in_short(choose(measured)) if measured else ""
     return Row(entry, words, answer, f"{len(sweep.hashes)}{times}", with_caveats, status.failed, state)

@@ -3,12 +3,13 @@
 from collections import Counter
 from collections.abc import Sequence
 
-from runner.reporting.answers import ALPHA, Answer
+from runner.reporting.answers import Answer
 from runner.reporting.comparison.pairs import label_text
 from runner.reporting.conditions import Condition, conditions_of
 from runner.reporting.metric_titles import capital, title
 from runner.reporting.table import Column, numbers
 from runner.statistics import fewest_pairs
+from runner.statistics.conclusion import ALPHA
 
 _MOST_SENTENCES, _MOST_CONDITIONS = 6, 6
 

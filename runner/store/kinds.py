@@ -17,7 +17,7 @@ if TYPE_CHECKING:
     from runner.store.run import Run
     from runner.store.sweep import Sweep
 
-Kind = Literal["run", "sweep", "tuning", "calibration", "report"]
+Kind = Literal["run", "sweep", "tuning", "challenge", "calibration", "report"]
 WORD = "latest"
 
 _NOTES = "newest"  # folder in an outputs folder: a file for each kind, so that two processes cannot damage one file
@@ -40,9 +40,10 @@ class StoredKind:
     more: Sequence[str] = ()
 
 
-# In the order in which a folder is recognized: a tuning is also a sweep, and all jobs have a config.
+# In the order in which a folder is recognized: a tuning and a challenge are also sweeps, and all jobs have a config.
 KINDS: Mapping[Kind, StoredKind] = {
     "tuning": StoredKind("tunings", ("tuning.json",), "runner tune", ("journal.log", "sweep.json")),
+    "challenge": StoredKind("challenges", ("challenge.json",), "runner challenge RESULT", ("sweep.json",)),
     "sweep": StoredKind("sweeps", ("sweep.json",), "runner -m OVERRIDES"),
     "calibration": StoredKind("calibrations", ("result.json",), "runner calibrate"),
     "run": StoredKind("runs", ("metrics.json", "config.yaml", "trace.parquet"), "runner OVERRIDES"),
@@ -124,7 +125,7 @@ def report_place(outputs: Path, name: str) -> Path:
 
 
 def open_stored(folder: Path) -> "Run | Sweep | Calibration":
-    """Open a folder; a tuning is opened as the sweep of its trials.
+    """Open a folder; a tuning is opened as the sweep of its trials, a challenge as that of its runs.
 
     Raises:
         StoreError: if the folder is none of these, or its run is unfinished.
@@ -135,7 +136,7 @@ def open_stored(folder: Path) -> "Run | Sweep | Calibration":
     from runner.store.sweep import open_sweep
 
     kind = kind_of(folder)
-    if kind in ("sweep", "tuning"):
+    if kind in ("sweep", "tuning", "challenge"):
         return open_sweep(folder)
     return open_calibration(folder) if kind == "calibration" else open_run(folder)
 

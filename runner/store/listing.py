@@ -10,7 +10,7 @@ from runner.store.kinds import KINDS, Kind
 from runner.store.seal import DamagedError, read_json
 from runner.store.sweep import open_sweep
 
-_OF_SWEEPS: tuple[Kind, ...] = ("sweep", "tuning")
+_OF_SWEEPS: tuple[Kind, ...] = ("sweep", "tuning", "challenge")
 
 
 @dataclass(frozen=True)
@@ -50,7 +50,7 @@ def list_entries(outputs: Path) -> list[Entry]:
 
 
 def runs_of_sweeps(entries: Sequence[Entry]) -> set[str]:
-    """Return the names of the runs that belong to sweeps and tunings.
+    """Return the names of the runs that belong to sweeps, tunings and challenges.
 
     Raises:
         StoreError: if one of these is damaged, or of another version.

@@ -300,4 +300,6 @@ def open_runs(folder: Path) -> list[Run]:
     Raises:
         StoreError: if the folder is neither, or is unfinished or damaged.
     """
-    return list(open_sweep(folder).runs()) if kind_of(folder) in ("sweep", "tuning") else [open_run(folder)]
+    return (
+        list(open_sweep(folder).runs()) if kind_of(folder) in ("sweep", "tuning", "challenge") else [open_run(folder)]
+    )

@@ -13,6 +13,7 @@ from runner.base.quantities import quantity
 from runner.base.sanitize import few, one_line
 from runner.reporting.answer_map import make_map
 from runner.reporting.answers import Answer
+from runner.reporting.challenge.beside import scope_line
 from runner.reporting.comparison.pairs import label_text
 from runner.reporting.comparison.sweeps import NOISE_ALONE, noise_alone
 from runner.reporting.conditions import conditions_of
@@ -175,7 +176,8 @@ def _abstract(subject: Subject, sweep: Sweep, answers: Sequence[Answer], first: 
     else:
         few = too_few(subject) if subject.ranked and subject.axes else ""
         texts += [few] if few else [*first, *causes(subject, answers)]
-        texts += filter(None, [made_equal(subject)] if answers else [])
+        if answers:
+            texts += filter(None, [scope_line(answers, [sweep.folder]), made_equal(subject)])
         texts += effects.describe_shared_variation(subject) if subject.ranked and subject.axes else []
     rules = [f"{rule} ({count} of {cells} cells)" for rule, count, *_ in measurements.caveats_by_rule()]
     texts += [f"May mislead: {', '.join(rules)}; see Caveats."] if rules else []

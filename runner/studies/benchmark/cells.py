@@ -9,8 +9,8 @@ import numpy as np
 
 from runner.base.arrays import FloatArray
 from runner.base.errors import RunnerError
-from runner.reporting.answers import ALPHA, SHARE
 from runner.statistics import Comparison, compare_paired, holm, holm_levels
+from runner.statistics.conclusion import ALPHA, SHARE
 from runner.store import Run
 from runner.study.fit import difference, setting
 from runner.study.results import Runs, found

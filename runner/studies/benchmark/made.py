@@ -5,8 +5,8 @@ from pathlib import Path
 from typing import Any
 
 from runner.base.data_file import read_data
-from runner.reporting.answers import SHARE
 from runner.reporting.words import in_words
+from runner.statistics.conclusion import SHARE
 from runner.studies.benchmark.cells import ALL_SEEDS, ROUND, Cell, cells
 from runner.study.results import LeftOutError, Runs, found
 

@@ -218,7 +218,7 @@ def test_a_sweep_tells_in_a_table_what_failed(cli):
     overrides = ("plant=rk4", "controller.period=0.01,0.06", "controller.singularity_damping=0", "trajectory=quintic")
     ending = cli("-m", *IN_PROCESS, "robot=macro", *overrides)
     assert ending.code == 1
-    *_, count, title, row, differs, made, _, _ = without_caveats(ending.err).splitlines()
+    *_, count, title, row, differs, made, _, _, _ = without_caveats(ending.err).splitlines()
     assert "plant.step" in differs  # which follows the period
     assert count == "runner: 1 run failed"
     assert title.split() == ["run", "why", "more", "in"]

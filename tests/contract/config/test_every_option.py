@@ -16,7 +16,7 @@ def options_of(group):
     return [f"{group}={name}" for name in group_options(group)]
 
 
-GROUPS = [group for group in groups() if group != "calibration"]
+GROUPS = [group for group in groups() if group not in ("calibration", "challenge")]  # of other commands
 OPTIONS = [option for group in GROUPS for option in options_of(group)]
 BESIDE = ("noise", "torque_limits", "mismatch", "wrist_sensor", "joint_torque_sensor", "endpoint_sensor",
           "disturbance_observer", "notch", "preset", "spec")  # fmt: skip

@@ -7,8 +7,9 @@ import numpy as np
 import pytest
 
 from runner.base.quantities import ROUNDING
-from runner.reporting.answers import ALPHA, PAIRS, Asked, judge
+from runner.reporting.answers import PAIRS, Asked, judge
 from runner.statistics import compare_paired
+from runner.statistics.conclusion import ALPHA
 from tools.answers import CASES, false_answers, same_law, true_answers
 
 N = 8

@@ -56,6 +56,7 @@ SHARED = {
     "environments/hand": "physics/environments/test_environments.py",
     "environments/push": "physics/environments/test_environments.py",
     "environments/wall": "physics/environments/test_environments.py",
+    "statistics/conclusion": "unit/statistics/test_scope.py",
     "metrics/caveats/plant_error": "physics/metrics/test_plant_error_caveat.py",
     "metrics/caveats/versions": "physics/metrics/test_monitor.py",
     "metrics/caveats/setting": "physics/metrics/test_monitor.py",

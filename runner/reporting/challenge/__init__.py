@@ -1,0 +1,1 @@
+"""Challenge of a stored comparison: its question, its sentences and its page."""

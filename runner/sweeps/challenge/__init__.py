@@ -1,0 +1,1 @@
+"""Challenge of a comparison: the same question with one choice changed at a time."""

@@ -1,0 +1,228 @@
+"""`runner challenge`: its question, list, budget, continuation, page and check, and bad input."""
+
+import shutil
+
+import pytest
+from support.engines import ASKED
+
+import runner
+from runner.reporting.challenge.question import read_question
+from runner.reporting.challenge.words import TITLES, scope_sentences
+from runner.reporting.formulas import faulty
+from runner.reporting.stored import compose_report
+from runner.statistics.scope import first_pairs
+from runner.sweeps.challenge.case import check_case
+from runner.sweeps.challenge.families import FAMILIES
+from runner.sweeps.challenge.question import CLASSES
+from runner.sweeps.challenge.stored import open_challenge
+from runner.sweeps.challenge.table import change_values, list_variations, read_values
+
+TASK = ("robot=macro", "plant=rk4", ASKED, "trajectory=quintic", "trajectory.duration=0.5", "duration=0.6",
+        "noise=thesis", "repetitions=6")  # fmt: skip
+GAINS = "controller.natural_frequency=20,40"
+FEW = ("--without", "engine,goal,direction,velocity,noise_kind,torque_limit,payload,friction,delay,period,model_error")
+LIST = ("--vary", "duration=0.5,2", "--vary", "gain_of_one=0.25,0.5", "--vary", "gain=0.5")
+
+
+@pytest.fixture(scope="module")
+def made(tmp_path_factory):
+    """A sweep over two gains, made once."""
+    folder = tmp_path_factory.mktemp("challenge") / "outputs"
+    runner.sweep(*TASK, GAINS, f"outputs={folder}", workers=0)
+    return folder
+
+
+@pytest.fixture(name="sweep")
+def _sweep(made, tmp_path):
+    """A copy of the sweep in the working directory."""
+    shutil.copytree(made, tmp_path / "outputs")
+    (folder,) = (tmp_path / "outputs" / "sweeps").iterdir()
+    return folder
+
+
+@pytest.fixture(scope="module", name="ended")
+def _ended(made, tmp_path_factory):
+    """A challenge of the sweep, made once."""
+    folder = tmp_path_factory.mktemp("ended") / "outputs"
+    shutil.copytree(made, folder)
+    (sweep,) = (folder / "sweeps").iterdir()
+    values = {"duration": [0.5, 2], "gain_of_one": [0.25, 0.5], "gain": [0.5]}
+    without = FEW[1].split(",")
+    return runner.challenge(sweep, by="controller.natural_frequency", vary=values, without=without, workers=0)
+
+
+def test_every_family_has_a_title_and_the_file_names_each_in_its_class():
+    values = read_values(())
+    assert set(values) == set(FAMILIES) == set(TITLES)
+    assert all(family.kind in CLASSES for some in FAMILIES.values() for family in some)
+
+
+@pytest.mark.costs(12)
+def test_words_of_a_difference_that_gains_make(ended):
+    found = {one.variation.label: one.judged for one in ended.found}
+    assert ended.came_back
+    assert ended.ended
+    assert ended.fresh.pairs == first_pairs(len(found))
+    assert ended.question.sign == -1  # twice the natural frequency follows better
+    assert {found[label].word for label in found if "step" in label or "noise" in label} == {"holds"}
+    half = "0.5 times the main gain of only controller.natural_frequency=40"
+    quarter = "0.25 times the main gain of only controller.natural_frequency=40"
+    assert found[half].word == "vanishes"  # both sides are the same law
+    assert found[quarter].word == "reversed"
+    assert found["a motion of 0.25 s"].word == "neither works"  # neither gain follows so fast a motion
+    assert found["a motion of 1 s"].word in ("holds", "holds, weaker")
+
+
+def test_a_reversal_turns_where_both_sides_have_one_gain(ended):
+    turning = next(one for one in ended.turnings if "0.25" in ended.found[one.variation].variation.label)
+    (turn,) = turning.turns
+    assert [turn.low, turn.value, turn.high] == pytest.approx([0.5, 0.5, 0.5], abs=1e-4)  # the same runs there
+
+
+def test_the_question_and_the_list_are_stored_and_read_back(ended):
+    again = runner.open_challenge(ended.folder)
+    assert again == ended
+    assert again.sentences[0].startswith("Largest tracking error: ")
+    frame = again.to_frame()
+    assert list(frame["family"]) == [one.variation.family for one in ended.found]
+    assert repr(again).startswith("Challenge: Largest tracking error: ")
+    assert runner.open_challenge(ended.folder).question.asks
+
+
+def test_only_the_extreme_variations_keep_a_trace(ended):
+    told = [one for one in ended.found if one.judged.effect is not None]
+    effects = sorted(told, key=lambda one: one.judged.effect)
+    extreme = {name for one in (effects[0], effects[-1]) for name in one.hashes}
+    runs = ended.folder.parent.parent / "runs"
+    own = {name for one in ended.found for name in one.hashes}
+    assert {path.name for path in runs.iterdir()} & own == extreme
+
+
+def test_page_with_the_specification_curve(ended, tmp_path):
+    document, _ = compose_report([ended.folder], output=tmp_path)
+    assert faulty(document) == []
+    titles = [section.title for section in document.sections]
+    assert titles[:2] == ["Variations", "Where it turns"]
+    curve, table = document.sections[0].blocks
+    drawn = {hint for series in curve.panels[0].series for hint in series.hints}
+    assert len(drawn) == len(ended.found) == len(table.rows) - len(ended.left_out)
+    assert all("runner " in hint for hint in drawn)
+
+
+def test_check_of_the_scope(cli, ended):
+    ending = cli("check", ended.folder, "--require-scope", "numbers")
+    assert (ending.code, ending.out) == (0, "good: the answer holds for numbers\n")
+    ending = cli("check", ended.folder, "--require-scope", "numbers,fairness")
+    assert ending.code == 1
+    assert "natural_frequency=40: reversed" in ending.out
+    for words in (["--require-scope", "luck"], [], ["--require-scope", "numbers", "--baseline", "x.yaml"]):
+        assert cli("check", ended.folder, *words).code == 2
+
+
+@pytest.mark.costs(4)
+def test_a_budget_cuts_and_the_sentence_says_so(cli, sweep):
+    words = ("challenge", sweep, "--by", "controller.natural_frequency", *FEW, *LIST)
+    ending = cli(*words, "--budget", 1, "-j", 1)
+    assert ending.code == 0
+    assert "Not tried within the budget of 1 variations: 9 variations." in ending.out
+    found = open_challenge(ending.folder)
+    assert len(found.cut) == len(found.found) - 1
+    again = cli("check", ending.folder, "--require-scope", "conditions")
+    assert (again.code, "not tried: budget" in again.out) == (1, True)
+    listed = cli("results")
+    assert "challenge" in listed.out
+
+
+@pytest.mark.costs(3)
+def test_an_interrupted_challenge_is_continued_with_the_stored_runs(cli, sweep, monkeypatch):
+    from runner.sweeps.challenge import run as module
+
+    words = ("challenge", sweep, "--by", "controller.natural_frequency", *FEW, "--budget", 1, "-j", 1)
+
+    def interrupt(*_):
+        raise KeyboardInterrupt
+
+    with monkeypatch.context() as patched:
+        patched.setattr(module, "judge_in_looks", interrupt)
+        assert cli(*words).code == 130
+    (folder,) = (sweep.parent.parent / "challenges").iterdir()
+    assert "interrupted" in scope_sentences(open_challenge(folder))[0]
+    ending = cli(*words)
+    assert (ending.code, ending.folder) == (0, folder)
+    assert "2 runs, 2 of them stored already" in ending.err
+
+
+@pytest.mark.costs(2)
+@pytest.mark.parametrize(
+    ("words", "said"),
+    [
+        (["--by", "robot"], "--by: unknown axis 'robot'. Allowed: controller.natural_frequency."),
+        (["--without", "noize"], "--without: unknown family 'noize'."),
+        (["--without", "noize"], "Did you mean 'noise'?"),
+        (["--vary", "noize=2"], "--vary: unknown family 'noize'."),
+        (["--vary", "noise"], "--vary: no values ('noise'). Allowed: KEY=A,B"),
+        (["--vary", "noise=much"], "challenge.noise: not a value of this family ('much')."),
+        (["--budget", "0"], "--budget: not a budget ('0'). Allowed: a time such as 60s"),
+        (["--metrics", "speed"], "unknown metric 'speed'"),
+        (["--metrics", "a,b"], "--metrics: several names (a,b). Allowed: one."),
+        (["--budget", "0.001s"], "--budget: too small for the asked case (0.001s)."),
+    ],
+)
+def test_bad_input_is_one_sentence(cli, sweep, words, said):
+    ending = cli("challenge", sweep, *words)
+    assert ending.code == 2
+    assert said in ending.err
+
+
+def test_results_without_a_comparison(cli, runs):
+    ending = cli("challenge", runs["goal"].folder)
+    assert ending.code == 2
+    assert "no comparison. Allowed: a sweep, a tuning, two sweeps or two runs." in ending.err
+
+
+def test_what_does_not_apply_is_left_out_with_its_reason(sweep):
+    case = check_case(read_question([sweep]))
+    values = change_values(read_values(()), ["noise=0.5"], ["torque_limit"])
+    found, left = list_variations(case, values)
+    assert left == []
+    assert [one.value for one in found if one.family == "noise"] == [0.5]
+    assert not [one for one in found if one.family == "torque_limit"]
+    assert change_values({}, ["a.b=[1,2],[3,4]", "gravity=9"], []) == {"a.b": ["[1,2]", "[3,4]"], "gravity": [9.0]}
+    order = [list(CLASSES).index(one.kind) for one in found]
+    assert order == sorted(order)
+
+
+def test_a_damaged_challenge_is_told(cli, ended, tmp_path):
+    folder = tmp_path / "outputs" / "challenges" / ended.folder.name
+    shutil.copytree(ended.folder, folder)
+    file = folder / "challenge.json"
+    file.write_text(file.read_text().replace("reversed", "holds"))
+    ending = cli("report", folder)
+    assert ending.code == 2
+    assert "the challenge's command writes it again" in ending.err
+
+
+@pytest.mark.parametrize(
+    ("text", "said"),
+    [
+        ("numbers: {step: [0.5]}\nequivalent: {}\nconditions: {}\nfairness: {}\n", ""),
+        ("numbers: {gain: [0.5]}\nequivalent: {}\nconditions: {}\nfairness: {}\n", "gain is in numbers. Allowed: in"),
+        ("numbers: {stop: [0.5]}\nequivalent: {}\nconditions: {}\nfairness: {}\n", "unknown family 'stop'"),
+        ("numbers: []\n", "not a table of variations"),
+    ],
+)
+def test_a_table_of_your_own(tmp_path, text, said):
+    (tmp_path / "challenge").mkdir()
+    (tmp_path / "challenge" / "standard.yaml").write_text(text)
+    if not said:
+        assert read_values([tmp_path]) == {"step": [0.5]}
+        return
+    with pytest.raises(runner.RunnerError, match=said):
+        read_values([tmp_path])
+
+
+def test_conclusions_stand_beside_their_scope(cli, sweep, ended):
+    words = ("compare", sweep, "--by", "controller.natural_frequency")
+    assert f"Not challenged: `runner challenge {sweep}` tries other choices." in cli(*words).out
+    shutil.copytree(ended.folder, sweep.parent.parent / "challenges" / ended.folder.name)
+    assert "Challenged: it holds for all tried numerical choices; it ends or turns with" in cli(*words).out
