@@ -68,7 +68,7 @@ def names_and_bits(*overrides):
 MOTIONS = {  # with and without PyBullet, on each Python
     ("robot=macro", "duration=0.3", "noise=thesis"): "27be37fb2dcce6f9",
     ("robot=macro", "duration=0.3", "robot.friction.coulomb=0.5"): "f82975ecb96c66dc",
-    ("robot=ur5e", "duration=0.1", "controller=computed_torque"): "fdeb4a73f0801e26",
+    ("robot=ur5e", "duration=0.1", "controller=computed_torque"): "b3b4b964eb8ec436",
 }
 
 
