@@ -111,6 +111,8 @@ class Values:
     def value(self, expression: str, line: int, instead: Mapping[str, Any] | None = None) -> Any:
         """Return the value of an expression.
 
+        Operations count towards the limit of the file, those with replaced values for each expression anew.
+
         Args:
             expression: The expression.
             line: Its line, counted from 1.
@@ -125,7 +127,7 @@ class Values:
             if any(isinstance(node, _BRANCHES) for node in ast.walk(parse(source))):
                 told = "chooses between words; a chapter has one branch: state a condition in a finding"
                 raise ProseError(self._file, line, f"{source}: {told}")
-            return scope.evaluate(source, self._budget)
+            return scope.evaluate(source, Budget() if instead else self._budget)
         except (ProseError, MissingError):  # what a run that was not made is needed for is left out of the report
             raise
         except RunnerError as error:
