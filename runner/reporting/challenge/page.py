@@ -120,26 +120,29 @@ def _differences(made: Challenge, placed: Sequence[tuple[float, Found]], command
     asked = made.fresh.log_ratio[0] if made.fresh and made.fresh.log_ratio and _in_logarithms(made) else None
     if asked is None and made.fresh and made.fresh.effect is not None:
         asked = (1.0 if made.question.is_fraction else 100.0) * made.fresh.effect
-    ends = np.array([placed[0][0] - 0.5, placed[-1][0] + 0.5])
+    ends = np.array(_ends(placed))
     lines = [Series("", ends, np.zeros(2), "dotted", color=_GREY)]
     if asked is not None:
         lines.append(Series("asked case", ends, np.full(2, asked), "dashed", color=2))
     unit = f"logarithm of {b} / {a}" if _in_logarithms(made) else f"{b} - {a}"
     label = unit if _in_logarithms(made) or made.question.is_fraction else f"{unit} (%)"
-    return Panel("", "variations", label, [*lines, *series])
+    return Panel("", "variations", label, [*lines, *series], x_range=_ends(placed))
 
 
 def _choices(placed: Sequence[tuple[float, Found]]) -> Panel:
-    """Return a row of dots for each family."""
-    families = list(dict.fromkeys(one.variation.family for _, one in placed))
+    """Return a row of dots for each family, in the order of the classes from above."""
+    families = list(dict.fromkeys(one.variation.family for _, one in placed))[::-1]
     series = []
     for row, name in enumerate(families):
         x = np.array([each for each, one in placed if one.variation.family == name])
         hints = [one.variation.label for _, one in placed if one.variation.family == name]
-        label = TITLES.get(name, name)
-        series.append(Series("", x, np.full(len(x), -float(row)), "points", color=_GREY, hints=hints, label=label))
-    ends = placed[0][0] - 0.5, placed[-1][0] + 0.5 + 0.4 * len(placed)
-    return Panel("", "variations", "family", series, x_range=ends, y_range=(0.5 - len(families), 0.5))
+        series.append(Series("", x, np.full(len(x), float(row)), "points", color=_GREY, hints=hints))
+    names = [TITLES.get(name, name) for name in families]
+    return Panel("", "variations", "", series, x_range=_ends(placed), y_names=names)
+
+
+def _ends(placed: Sequence[tuple[float, Found]]) -> tuple[float, float]:
+    return placed[0][0] - 0.5, placed[-1][0] + 0.5
 
 
 def _command(one: Found, commands: Mapping[str, str]) -> str:

@@ -65,8 +65,8 @@ def upright(series: Series) -> bool:
 class Panel:
     """One pair of axes with its curves; labels carry the unit, as in "tip error (m)".
 
-    With `x_names` the abscissae are places 0, 1, ... with these names below them. Without `has_legend` its title or the
-    caption names its curves.
+    With `x_names` the abscissae are places 0, 1, ... with these names below them; `y_names` are names of ordinates.
+    Without `has_legend` its title or the caption names its curves.
     """
 
     title: str
@@ -79,6 +79,7 @@ class Panel:
     y_range: tuple[float, float] | None = None
     x_names: Sequence[str] = ()
     has_legend: bool = True
+    y_names: Sequence[str] = ()
 
 
 NOTHING = "never"

@@ -83,9 +83,10 @@ def _panel(panel: Panel) -> Json:
     edges = [edge for series in panel.series for edge in (series.low, series.high) if edge is not None]
     heights = [series.y for series in panel.series] + edges
     across = _axis(panel.x_label, panel.x_log, panel.x_range, [series.x for series in panel.series])
+    upright = _axis(panel.y_label, panel.y_log, panel.y_range, heights, _UPRIGHT_WIDTH)
     layout = {
         "xaxis": across | _named_places(panel.x_names) if panel.x_names else across,
-        "yaxis": _axis(panel.y_label, panel.y_log, panel.y_range, heights, _UPRIGHT_WIDTH),
+        "yaxis": upright | _named_places(panel.y_names) if panel.y_names else upright,
         **({"annotations": [_NEVER]} if is_empty(panel) else {}),
         "showlegend": panel.has_legend and any(plain(series.name).strip() for series in panel.series),
         "hovermode": "x unified" if all(map(_compared, panel.series)) else "closest",

@@ -53,7 +53,7 @@ def maps_in_readable_units(figure: Maps) -> Maps:
 def _in_unit(panel: Panel, row: Sequence[Panel], axis: str) -> Panel:
     label: str = getattr(panel, f"{axis}_label")
     found = _UNIT.search(label)
-    if found is None or (axis == "x" and panel.x_names):
+    if found is None or (axis == "x" and panel.x_names) or (axis == "y" and panel.y_names):
         return panel
     alike = [each for each in row if getattr(each, f"{axis}_label") == label]
     factor, name = choose_unit(max(_largest(each, axis) for each in alike), found[1])

@@ -151,12 +151,18 @@ def _curves(curves: Curves, sheet: Sheet, kind: type[Figure] = Figure) -> Figure
     height = sheet.scale * min(
         _HEIGHTS.get(columns, _LOWER), _ROWS[max((rows for rows in _ROWS if rows <= count), default=0)]
     )
+    height = max(height, sheet.line * max((len(panel.y_names) for panel in panels), default=0))
     shared = shares_legend(panels)
     lines = max((_beside(panel, height, sheet).count("\n") for panel in panels), default=0)
-    left, right = _LEFT * sheet.scale + lines * sheet.line, _RIGHT * sheet.scale
+    y_names = [names_beside(panel.y_names, height, sheet) if panel.y_names else None for panel in panels]
+    named = max((names.room for names in y_names if names), default=0.0)
+    left, right = max(_LEFT * sheet.scale + lines * sheet.line, named + 2.0 * sheet.line), _RIGHT * sheet.scale
     frames = [
-        _frame(panel, () if shared or not panel.has_legend else panel.series, sheet, width - left - right, height)
-        for panel in panels
+        replace(
+            _frame(panel, () if shared or not panel.has_legend else panel.series, sheet, width - left - right, height),
+            y_names=names,
+        )
+        for panel, names in zip(panels, y_names, strict=True)
     ]
     rows = [frames[start : start + columns] for start in range(0, len(frames), columns)]
     alike = shared or not all(panel.has_legend for panel in panels)
@@ -266,8 +272,9 @@ def _draw_panel(axes: Axes, frame: _Frame) -> list[Line2D]:
         axes.set_xscale("log", nonpositive="mask")
     if panel.y_log:
         axes.set_yscale("log", nonpositive="mask")
-    # Next to the widest tick labels of a log axis.
-    axes.yaxis.set_label_coords(-(_LEFT - 0.12) * sheet.scale / frame.width, 0.5)
+    # Next to the widest tick labels of a log axis, or to the names of places.
+    names = frame.y_names.room + sheet.line if frame.y_names else 0.0
+    axes.yaxis.set_label_coords(-max((_LEFT - 0.12) * sheet.scale, names) / frame.width, 0.5)
     axes.margins(x=0.02)
     chosen = palette.indices([series.color for series in panel.series])
     handles = [
@@ -288,7 +295,11 @@ def _draw_panel(axes: Axes, frame: _Frame) -> list[Line2D]:
         _mark(axes, "x", 5, whole)
     if is_empty(panel):
         literal(axes.text(0.5, 0.5, "", ha="center", va="center", transform=axes.transAxes), NOTHING)
-    _mark(axes, "y", max(3, int(frame.height / (0.22 * sheet.scale))))
+    if frame.y_names:
+        frame.y_names.put(axes.yaxis, len(panel.y_names))
+        axes.set_ylim(-0.5, len(panel.y_names) - 0.5)
+    else:
+        _mark(axes, "y", max(3, int(frame.height / (0.22 * sheet.scale))))
     return handles
 
 
