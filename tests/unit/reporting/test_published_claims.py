@@ -31,7 +31,7 @@ def test_the_claims_of_a_study_are_numbered_in_order(study):
 
 def test_the_statements_have_names_of_their_own():
     names = [each.name for each in load_statements("meca500")]
-    assert len(names) == len(set(names)) == 6
+    assert len(names) == len(set(names)) == 7
 
 
 def test_a_claim_that_does_not_fit_is_told_with_its_number(entries):
