@@ -14,6 +14,7 @@ alike, the arm is asked to rest before and after the run, if the run does; and t
 
 from collections.abc import Sequence
 from dataclasses import dataclass
+from functools import cached_property
 
 import numpy as np
 from scipy.interpolate import CubicSpline
@@ -146,10 +147,9 @@ def _at_full_overlap(
     covered = np.minimum(log[1], run[1] + lags) - np.maximum(log[0], run[0] + lags)
     surely = np.where((whatever_sign > _SURELY) & (each.min(axis=1) < -RESEMBLES), covered, 0.0)
     other = int(np.argmax(surely * whatever_sign))
+    # A motion that repeats itself fits elsewhere, too.
     fits = each.sum(axis=1)
-    alike = covered[
-        fits >= min(_AS_GOOD * fits[best], fits[best])
-    ].max()  # a motion that repeats itself fits elsewhere, too
+    alike = covered[fits >= min(_AS_GOOD * fits[best], fits[best])].max()
     return other if surely[other] > _MORE_COVERED * alike else best
 
 
@@ -231,20 +231,21 @@ class _Match:
     def whole(self, start: float) -> bool:
         """Return whether the recording covers a whole run that rests at an end or has the recording's length."""
         lasts, logged = self._run_t[-1] - self._run_t[0], self._t[-1] - self._t[0]
-        known = bool(self._resting_ends()) or abs(logged - lasts) < _AS_LONG * lasts
+        known = bool(self._resting_ends) or abs(logged - lasts) < _AS_LONG * lasts
         return bool(known and self.covered(start) > lasts - max(2.0 * self._near, _AS_LONG * lasts))
 
     def rests(self, start: float) -> bool:
         """Return whether the recording rests before and after the run, where the run starts and ends at rest."""
-        for end, lasts, side in self._resting_ends():
+        for end, lasts, side in self._resting_ends:
             later = side * (self._t - start - end)
             held = self._recorded[(later > 0.0) & (later < lasts)]
             if len(held) and (np.ptp(held, axis=0) > _RESTING * self._swing).any():
                 return False
         return True
 
+    @cached_property
     def _resting_ends(self) -> list[tuple[float, float, float]]:
-        """Return ends of the run at rest: time, time that the run moves visibly in, and -1 or 1 for start or end."""
+        """Ends of the run at rest: time, time that the run moves visibly in, and -1 or 1 for start or end."""
         positions, fastest = self._path(self._run_t), np.abs(self._path(self._run_t, 1)).max(axis=0)
         ends = []
         for row, side in ((0, -1.0), (-1, 1.0)):

@@ -15,7 +15,6 @@ from runner.robots.model import RobotModel
 _MOST_ROWS = 2_000
 _EDGE = 0.05  # of the rows at each end, where the low-pass knows only one side
 _EXPLAINS = 0.1  # of the squares of the torques' differences, from which on a cause is named
-_ORDER = ("friction", "rotor inertia", "a payload", "a constant")
 
 
 def verdict_lines(found: RecordingComparison) -> Iterator[str]:
@@ -97,23 +96,22 @@ def explained(found: RecordingComparison) -> Mapping[str, float]:
         pin_model, data = arm.pin_model, arm.pin_model.createData()
         return np.array([pin.rnea(pin_model, data, q[row], dq[row], ddq[row]) for row in rows])
 
-    away = tau[rows] - torques(rigid)
-    payload = torques(model.with_payload(1.0)) - torques(model)
+    of_model = torques(rigid)
+    payload = torques(rigid.with_payload(1.0)) - of_model
     scale = np.sqrt(np.mean(tau[rows] ** 2, axis=0)) + 1e-9
     each = np.eye(len(joints))
     columns = {
         "friction": [dq[rows][:, :, None] * each, signs[rows][:, :, None] * each],
-        "rotor inertia": [ddq[rows][:, :, None] * each] if found.recording.side == "motor" else [],
+        "rotor inertia": [ddq[rows][:, :, None] * each],
         "a payload": [payload[:, :, None]],
         "a constant": [np.broadcast_to(each, (len(rows), *each.shape))],
     }
-    y = (away / scale).ravel()
+    if found.recording.side == "link":
+        del columns["rotor inertia"]
+    y = ((tau[rows] - of_model) / scale).ravel()
     return {
-        cause: _share(
-            y, np.concatenate([(part / scale[:, None]).reshape(len(y), -1) for part in columns[cause]], axis=1)
-        )
-        for cause in _ORDER
-        if columns[cause]
+        cause: _share(y, np.concatenate([(part / scale[:, None]).reshape(len(y), -1) for part in parts], axis=1))
+        for cause, parts in columns.items()
     }
 
 

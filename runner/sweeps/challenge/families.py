@@ -69,8 +69,8 @@ def _step(case: Case, value: Value) -> Change:
     question = case.question
     share = float(value)
     if question.error and question.size:
-        least = max(abs(median) for side in question.sides for median in [side.medians.get(question.metric, 0.0)])
-        share = min(share, _TENTH * abs(question.size) * least / question.error)
+        largest = max(abs(side.medians.get(question.metric, 0.0)) for side in question.sides)
+        share = min(share, _TENTH * abs(question.size) * largest / question.error)
     divisor = max(2, math.ceil(1.0 / share - 1e-9))
     steps = [config.timing.step / divisor for config in case.configs]
     label = f"a step {divisor} times finer"
