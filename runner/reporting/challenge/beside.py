@@ -26,7 +26,7 @@ def scope_line(answers: Sequence[Answer], folders: Sequence[Path], words: Sequen
     if found:
         return short_scope(found[0])
     if not words:
-        return "Not challenged: `runner challenge` tries other choices."
+        return "Not challenged: the command runner challenge tries other choices."  # a page marks no code
     return f"Not challenged: `{shlex.join(['runner', 'challenge', *words])}` tries other choices."
 
 
