@@ -41,7 +41,7 @@ def robots_dir() -> Path:
 
 def studies_dir() -> Path:
     """Return the folder of the built-in studies, with one folder for each."""
-    return _PACKAGE / "studies"
+    return _PACKAGE / "papers" / "studies"
 
 
 def studies_with(file: str) -> list[str]:

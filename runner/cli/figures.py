@@ -14,7 +14,7 @@ from runner.base.paths import STUDY_FILE
 from runner.base.sanitize import one_line
 from runner.cli.arguments import WIDTHS, Parser, Stored, millimetres
 from runner.config.compose.files import outputs_dir
-from runner.study.names import study_names
+from runner.papers.study.names import study_names
 
 if TYPE_CHECKING:
     from runner.reporting.charts.sheet import Sheet
@@ -121,10 +121,10 @@ def _of_study(name: str, outputs: Path) -> "tuple[Document, Path]":
     folder, mend = outputs / "reports" / Path(name).name, f"`runner reproduce {name} --output {outputs}` makes"
     if not folder.is_dir():
         raise RunnerError(f"no report on {name} in {outputs}; {mend} it")
-    from runner.study.chapters import Chapters
-    from runner.study.execute import count_missing, make_all
-    from runner.study.report import study_document
-    from runner.study.study import load_study
+    from runner.papers.study.chapters import Chapters
+    from runner.papers.study.execute import count_missing, make_all
+    from runner.papers.study.report import study_document
+    from runner.papers.study.study import load_study
 
     print(f"looking for the runs of {name} ...", file=sys.stderr)
     study = load_study(name)

@@ -18,7 +18,7 @@ from runner.cli.arguments import Parser
 from runner.config.compose.files import group_options, groups
 
 if TYPE_CHECKING:
-    from runner.reporting.published_claims import PublishedClaim
+    from runner.papers.reporting.published_claims import PublishedClaim
 
 
 def add_arguments(parser: Parser) -> None:
@@ -72,7 +72,7 @@ def _read_bullets(docstring: str) -> dict[str, str]:
 
 
 def _list_claims(_: Sequence[Path]) -> dict[str, str]:
-    from runner.reporting.published_claims import CLAIMS, STATEMENTS, load_claims, load_statements
+    from runner.papers.reporting.published_claims import CLAIMS, STATEMENTS, load_claims, load_statements
 
     claims = {
         f"{source} {claim.number}": f"{claim.statement}{_printed(claim)} ({claim.place})"
@@ -99,8 +99,8 @@ def _list_baselines(_: Sequence[Path]) -> dict[str, str]:
 
 
 def _list_studies(_: Sequence[Path]) -> dict[str, str]:
-    from runner.study.manifest import read_manifest
-    from runner.study.names import find_study, study_names
+    from runner.papers.study.manifest import read_manifest
+    from runner.papers.study.names import find_study, study_names
 
     found = {name: read_manifest(find_study(name).folder) for name in study_names()}
     apart = {

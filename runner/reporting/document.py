@@ -14,16 +14,16 @@ import numpy as np
 from numpy.typing import NDArray
 
 from runner.base.arrays import FloatArray as FloatArray
+from runner.papers.reporting.equation import Equation as Equation
+from runner.papers.reporting.equation import EquationForm as EquationForm
+from runner.papers.reporting.equation import EquationVerdict
+from runner.papers.reporting.published_claims import Verdict
 from runner.reporting.answer_map import AnswerMap
 from runner.reporting.charts.figure import Curves as Curves
 from runner.reporting.charts.figure import Map as Map
 from runner.reporting.charts.figure import Maps as Maps
 from runner.reporting.charts.figure import Panel as Panel
 from runner.reporting.charts.figure import Series as Series
-from runner.reporting.equation import Equation as Equation
-from runner.reporting.equation import EquationForm as EquationForm
-from runner.reporting.equation import EquationVerdict
-from runner.reporting.published_claims import Verdict
 from runner.reporting.table import Origin as Origin
 from runner.reporting.table import Table as Table
 

@@ -4,6 +4,7 @@ import re
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 
+from runner.papers.reporting.equation import name_text
 from runner.reporting.document import (
     Block,
     Curves,
@@ -22,7 +23,6 @@ from runner.reporting.document import (
     Text,
     Verdicts,
 )
-from runner.reporting.equation import name_text
 from runner.reporting.markup import anchor, spans
 
 _NUMBERED = re.compile(r"(?:(figure|fig\.?|table) )?(\d+(?:\.\d+)*[a-z]?)", re.IGNORECASE)

@@ -22,7 +22,7 @@ from runner.base.errors import RunnerError
 from runner.base.paths import templates_dir
 from runner.base.quantities import number, unit_text
 from runner.base.sanitize import plain
-from runner.reporting import formulas, outline
+from runner.reporting import mathml, outline
 from runner.reporting.charts import palette, static
 from runner.reporting.charts.interactive import pack, plotly_spec
 from runner.reporting.consistency import make_consistent
@@ -80,7 +80,7 @@ def _content(document: Document) -> dict[str, Any]:
 def render_html(document: Document) -> str:
     """Return a document as an HTML page."""
     progress.begin("writing the HTML")
-    made = formulas.all_mathml(document)
+    made = mathml.all_mathml(document)
     has_plots, has_run_list, has_playback = (
         any(isinstance(block, kinds) for block in outline.blocks(document))
         for kinds in ((Curves, Maps, RunList), RunList, Playback)
@@ -163,7 +163,7 @@ def asset(name: str) -> Code:
 def render_pdf(document: Document) -> bytes:
     """Return a document as PDF; the same document gives the same bytes."""
     progress.begin("drawing figures", outline.count_figures(document), "figures")
-    made = formulas.all_mathml(document)
+    made = mathml.all_mathml(document)
     with tempfile.TemporaryDirectory() as name:
         folder, numbers = Path(name), count(1)
 

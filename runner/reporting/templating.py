@@ -10,8 +10,8 @@ import jinja2
 
 from runner.base.paths import templates_dir
 from runner.base.sanitize import plain
+from runner.papers.reporting.equation import FOLDED, SHOWN, by_finding, by_place, name_text
 from runner.reporting.document import Origin
-from runner.reporting.equation import FOLDED, SHOWN, by_finding, by_place, name_text
 from runner.reporting.markup import spans
 from runner.reporting.outline import verdict_place
 from runner.reporting.verdicts import WORDS

@@ -5,10 +5,10 @@ from collections.abc import Iterable, Iterator
 from dataclasses import dataclass
 from typing import NamedTuple
 
+from runner.papers.reporting.equation import FOLDED, SHOWN
+from runner.papers.reporting.published_claims import CONTRADICTION
 from runner.reporting.document import Block, ClaimResult, Document, Equations, Verdicts
-from runner.reporting.equation import FOLDED, SHOWN
 from runner.reporting.outline import blocks, claim_place, verdict_place
-from runner.reporting.published_claims import CONTRADICTION
 
 
 class Word(NamedTuple):

@@ -4,7 +4,7 @@ import ast
 from collections.abc import Iterator, Set
 from pathlib import Path
 
-from runner.study.check import typed_in
+from runner.papers.study.check import typed_in
 
 
 def typed_in_module(path: Path, levels: Set[str]) -> Iterator[str]:

@@ -8,8 +8,7 @@ import matplotlib as mpl
 import numpy as np
 from matplotlib.mathtext import MathTextParser
 
-from runner.reporting.charts import canvas
-from runner.studies.thesis.diagrams.block_diagram import (
+from runner.papers.studies.thesis.diagrams.block_diagram import (
     ControlGraph,
     _box,
     _route,
@@ -17,10 +16,11 @@ from runner.studies.thesis.diagrams.block_diagram import (
     _text_width,
     block_diagram,
 )
+from runner.reporting.charts import canvas
 
 # The same few strings are in all graphs; each is set once.
 MathTextParser._parse_cached = functools.cache(MathTextParser._parse_cached.__wrapped__)
-sys.modules["runner.studies.thesis.diagrams.block_diagram"]._text_width = functools.cache(_text_width)
+sys.modules["runner.papers.studies.thesis.diagrams.block_diagram"]._text_width = functools.cache(_text_width)
 
 
 def joined(*names):

@@ -11,7 +11,7 @@ from random import Random
 from typing import Any
 
 from runner.base.errors import RunnerError
-from runner.base.expressions.evaluator import Budget, Scope
+from runner.papers.expressions.evaluator import Budget, Scope
 
 _WATCHED = ("open", "exec", "compile", "import", "os.", "subprocess.", "socket.", "ctypes.", "shutil.", "marshal.")
 _SYNTAX = "<unknown>"  # the file that Python names where a string is only made a syntax tree

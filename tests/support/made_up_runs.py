@@ -8,8 +8,8 @@ import numpy as np
 import pandas as pd
 import pyarrow
 
+from runner.papers.study.results import Parts, Results
 from runner.store import Run
-from runner.study.results import Parts, Results
 
 FAILURE = {"reason": "diverged", "time": 0.5, "joint": None, "repetition": 0}
 

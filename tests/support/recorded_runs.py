@@ -18,8 +18,8 @@ import numpy as np
 from support.study_plans import RECORDED, recorded_jobs
 from support.thin_plans import make_runs
 
+from runner.papers.study.study import load_study
 from runner.store import Run
-from runner.study.study import load_study
 
 FOLDER = Path(__file__).parents[1] / "recorded"
 OUTPUTS = "outputs"

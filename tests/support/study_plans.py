@@ -5,8 +5,8 @@ from collections.abc import Mapping
 
 from support.thin_plans import Overrides, stand_ins
 
-from runner.studies.precision.measure import PLANT
-from runner.study.study import load_study
+from runner.papers.studies.precision.measure import PLANT
+from runner.papers.study.study import load_study
 
 FULL_ALONE = ("late_and_limited.md",)  # chapters only of the benchmark's full profile
 MOMENT = 0.08  # s

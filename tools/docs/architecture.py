@@ -39,19 +39,20 @@ A curve connects a package with one that it imports. Imports that follow from th
 
 A claim of a study becomes a square on the first screen of its report by these files, in this order:
 
-- data: `runner/studies/thesis/claims.yaml`, `runner/studies/thesis/runs.yaml`, `runner/studies/thesis/answers.md`
-- verdict: `runner/reporting/published_claims.py`, `runner/study/claims.py`, from `runner/study/results.py`
-- chapter: `runner/study/chapters.py`, `runner/study/prose/reader.py`, `runner/study/prose/expressions.py`,
-  `runner/study/prose/paragraphs.py`
-- report: `runner/study/report.py`, `runner/reporting/document.py`, `runner/reporting/verdicts.py`
+- data, in `runner/papers/studies/thesis/`: `claims.yaml`, `runs.yaml`, `answers.md`
+- verdict: `runner/papers/reporting/published_claims.py`, `runner/papers/study/claims.py`, from
+  `runner/papers/study/results.py`
+- chapter: `runner/papers/study/chapters.py`, `runner/papers/study/prose/reader.py`,
+  `runner/papers/study/prose/expressions.py`, `runner/papers/study/prose/paragraphs.py`
+- report: `runner/papers/study/report.py`, `runner/reporting/document.py`, `runner/reporting/verdicts.py`
 - page: `runner/reporting/render.py`, `reports/templates/report.html.j2`, `reports/templates/style.css`
 
 Runs of a study become a figure by the same chapter, report and page, and by these files:
 
-- data: `runner/studies/thesis/experiment/figure_5_12.yaml`, `runner/studies/thesis/chapter5.md`
-- plan: `runner/study/grid.py`, `runner/study/grids.py`, `runner/study/study.py`
-- runs: `runner/study/execute.py`, `runner/study/items.py`
-- figure: `runner/study/prose/compared.py`, `runner/reporting/charts/figure.py`,
+- data: `runner/papers/studies/thesis/experiment/figure_5_12.yaml`, `runner/papers/studies/thesis/chapter5.md`
+- plan: `runner/papers/study/grid.py`, `runner/papers/study/grids.py`, `runner/papers/study/study.py`
+- runs: `runner/papers/study/execute.py`, `runner/papers/study/items.py`
+- figure: `runner/papers/study/prose/compared.py`, `runner/reporting/charts/figure.py`,
   `runner/reporting/charts/interactive.py`
 """
 _SUMMARY = re.compile(r'r?"""(.*?)(?:"""|\n)')

@@ -12,13 +12,13 @@ import numpy as np
 from matplotlib.figure import Figure
 
 import runner
+from runner.papers.studies.thesis.diagrams.block_diagram import ControlGraph, Edge, Node, block_diagram, control_graph
 from runner.reporting.charts import palette
 from runner.reporting.charts.canvas import GREY, INK, drawing
 from runner.reporting.charts.sheet import column
 from runner.reporting.document import Playback
 from runner.reporting.export.motion import write_motion
 from runner.reporting.overlaid_runs import Level, overlaid
-from runner.studies.thesis.diagrams.block_diagram import ControlGraph, Edge, Node, block_diagram, control_graph
 from tools.docs.friction_picture import friction
 from tools.docs.robot_pictures import robots
 

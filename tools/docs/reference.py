@@ -26,12 +26,12 @@ from runner.config.limits import SweepConfig
 from runner.config.robot import OneArmConfig, StageConfig
 from runner.config.run import RunSettings
 from runner.controllers.joint_space.joint_law import JointLawConfig
+from runner.papers.study.chapters import SHARED
+from runner.papers.study.code import public_functions
 from runner.plugins.metric_units import families
 from runner.plugins.registry import Kinds
 from runner.schema.model import StrictModel, nested_model
 from runner.schema.units import WRITTEN
-from runner.study.chapters import SHARED
-from runner.study.code import public_functions
 from tools.docs.allowed_values import describe
 from tools.docs.compiled_table import compiled_section
 

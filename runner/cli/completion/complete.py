@@ -136,7 +136,7 @@ def _topics(_: Parser) -> Iterable[str]:
 
 
 def _studies(parser: Parser) -> Iterable[str]:
-    from runner.study.names import study_names
+    from runner.papers.study.names import study_names
 
     return (*study_names(), *(("audit", "all") if parser.prog == "runner reproduce" else ()))
 

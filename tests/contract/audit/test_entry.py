@@ -4,11 +4,11 @@ import re
 
 import pytest
 
-from runner.audit.entry import Entry, entries, left_side, parts
-from runner.audit.sources import sources
 from runner.base.errors import RunnerError
-from runner.base.expressions.parser import parse
-from runner.base.expressions.typesetting import typeset
+from runner.papers.audit.entry import Entry, entries, left_side, parts
+from runner.papers.audit.sources import sources
+from runner.papers.expressions.parser import parse
+from runner.papers.expressions.typesetting import typeset
 from runner.reporting.markup import spans
 
 GOOD = {"id": "a", "number": "1", "place": "p", "title": "t", "printed": {"math": "x"}}

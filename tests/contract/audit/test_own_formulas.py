@@ -3,9 +3,9 @@
 import numpy as np
 import pytest
 
-from runner.audit.model_derivations import by_model
-from runner.audit.own_formulas import QUANTITIES, compare
 from runner.base.errors import RunnerError
+from runner.papers.audit.model_derivations import by_model
+from runner.papers.audit.own_formulas import QUANTITIES, compare
 
 MASS = """
 elements:

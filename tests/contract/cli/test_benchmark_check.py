@@ -8,8 +8,8 @@ from pathlib import Path
 import pytest
 
 from runner.base.errors import RunnerError
-from runner.cli.benchmark import check_law
-from runner.study.code import read_user_plugins
+from runner.papers.commands.benchmark import check_law
+from runner.papers.study.code import read_user_plugins
 
 EXAMPLE = Path(__file__).parents[3] / "examples" / "own_robot"
 LAW = "gravity_pd"

@@ -8,7 +8,7 @@ from support.engines import ASKED
 import runner
 from runner.reporting.challenge.question import read_question
 from runner.reporting.challenge.words import TITLES, scope_sentences
-from runner.reporting.formulas import faulty
+from runner.reporting.mathml import faulty
 from runner.reporting.stored import compose_report
 from runner.statistics.scope import first_pairs
 from runner.sweeps.challenge.case import check_case

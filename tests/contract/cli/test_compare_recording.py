@@ -11,7 +11,7 @@ import pytest
 import runner
 from runner.base.paths import examples_dir
 from runner.recordings.compare import compare_recording
-from runner.reporting.formulas import faulty
+from runner.reporting.mathml import faulty
 from runner.reporting.recording_report import recording_document, report_folder
 from runner.reporting.render import render_html
 from runner.sweeps.job import run

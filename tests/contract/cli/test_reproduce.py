@@ -5,13 +5,13 @@ import json
 
 import pytest
 
-from runner.audit.audit import audit
-from runner.audit.verdict import VERDICTS
 from runner.cli import reproduce
+from runner.papers.audit.audit import audit
+from runner.papers.audit.verdict import VERDICTS
+from runner.papers.study.execute import make_all
+from runner.papers.study.measured import Measured, finding
+from runner.papers.study.study import load_study
 from runner.reporting.document import Document, Section
-from runner.study.execute import make_all
-from runner.study.measured import Measured, finding
-from runner.study.study import load_study
 from runner.sweeps import job as workers
 from runner.sweeps import work
 
@@ -128,7 +128,7 @@ def test_calibrations_are_made_by_the_same_engine(small_study, tmp_path):
 
 def test_the_audit_is_a_report_and_a_table(cli, monkeypatch, tmp_path):
     checked = audit("meca500", samples=20)[:10]
-    monkeypatch.setattr("runner.audit.audit.audit_all", lambda: {"meca500": checked})
+    monkeypatch.setattr("runner.papers.audit.audit.audit_all", lambda: {"meca500": checked})
     ending = cli("reproduce", "audit")
     assert (ending.code, ending.folder) == (0, tmp_path / "outputs" / "reports" / "audit")
     names = sorted(path.name for path in ending.folder.iterdir())
@@ -181,6 +181,6 @@ def test_a_file_behind_json_is_rejected_with_the_redirection(cli):
 
 def test_jobs_are_the_processes_of_the_sweep(cli, small_study, monkeypatch):
     given = []
-    monkeypatch.setattr("runner.study.execute.make_all", lambda *arguments: given.append(arguments[2]) or 1 / 0)
+    monkeypatch.setattr("runner.papers.study.execute.make_all", lambda *arguments: given.append(arguments[2]) or 1 / 0)
     assert cli("reproduce", "small", "--jobs", "3", "sweep.time_limit=9").code == 3
     assert given == [["sweep.time_limit=9", "hydra.sweeper.workers=3"]]

@@ -10,7 +10,7 @@ from support.pages import ROOT
 
 import runner
 from runner.base.errors import ConfigError
-from runner.reporting.formulas import faulty
+from runner.reporting.mathml import faulty
 from runner.reporting.run_report import run_document
 
 ROBOT_YAML = """\

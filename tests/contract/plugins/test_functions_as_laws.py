@@ -8,9 +8,9 @@ import pytest
 
 import runner
 from runner.base.errors import ConfigError
+from runner.papers.study.code import read_user_plugins
 from runner.plugins import discovery
 from runner.store import run_hash
-from runner.study.code import read_user_plugins
 
 LAWS = '''\
 from math import sin

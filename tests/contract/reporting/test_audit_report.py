@@ -5,10 +5,10 @@ import unicodedata
 
 import pytest
 
-from runner.audit.audit import audit
-from runner.audit.verdict import VERDICTS
-from runner.reporting import formulas, outline
-from runner.reporting.audit.report import audit_document
+from runner.papers.audit.audit import audit
+from runner.papers.audit.verdict import VERDICTS
+from runner.papers.reporting.audit_report import audit_document
+from runner.reporting import outline
 from runner.reporting.document import Curves, Equations, Table
 from runner.reporting.render import render_html
 from runner.reporting.verdicts import WORDS, tallies
@@ -58,7 +58,7 @@ def test_each_place_has_as_many_equations_as_are_printed(document):
 
 
 def test_every_formula_is_valid(document):
-    assert formulas.faulty(document) == []
+    assert mathml.faulty(document) == []
 
 
 def test_each_wrong_formula_that_is_run_has_its_curves(document):

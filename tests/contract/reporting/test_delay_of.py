@@ -4,7 +4,7 @@ from types import SimpleNamespace
 
 import pytest
 
-from runner.study.run_values import delay_of
+from runner.papers.study.run_values import delay_of
 
 
 @pytest.mark.parametrize(

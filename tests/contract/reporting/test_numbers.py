@@ -6,13 +6,13 @@ import numpy as np
 import pytest
 from support.made_up_runs import planned
 
-from runner.study.measured import Measured
-from runner.study.prose import read_chapter
-from runner.study.prose.blocks import metric, percent, round_to
-from runner.study.prose.plots import over
-from runner.study.prose.signals import setting
-from runner.study.prose.tables import column, level, table
-from runner.study.results import MissingError, Results
+from runner.papers.study.measured import Measured
+from runner.papers.study.prose import read_chapter
+from runner.papers.study.prose.blocks import metric, percent, round_to
+from runner.papers.study.prose.plots import over
+from runner.papers.study.prose.signals import setting
+from runner.papers.study.prose.tables import column, level, table
+from runner.papers.study.results import MissingError, Results
 from runner.sweeps.job import run
 
 

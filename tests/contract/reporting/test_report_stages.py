@@ -3,8 +3,8 @@
 import pytest
 from support.sample_document import document
 
-from runner.audit.audit import audit_all
 from runner.base import progress
+from runner.papers.audit.audit import audit_all
 from runner.reporting import outline
 from runner.reporting.render import write_report
 
@@ -42,7 +42,7 @@ def test_a_report_in_one_format_has_its_stages_only(tmp_path, told, formats):
 
 
 def test_the_audit_steps_once_for_each_equation(told, monkeypatch):
-    monkeypatch.setattr("runner.audit.audit.sources", lambda: ["meca500", "xarm7"])
+    monkeypatch.setattr("runner.papers.audit.audit.sources", lambda: ["meca500", "xarm7"])
     checked = audit_all(samples=2)
     count = sum(map(len, checked.values()))
     assert told == {"auditing": [count, count]}

@@ -12,7 +12,7 @@ from runner.base.quantities import quantity, with_powers
 from runner.reporting import outline
 from runner.reporting.comparison.runs import runs_document
 from runner.reporting.document import Code, Curves, Notice, Playback, Provenance, Table, Text
-from runner.reporting.formulas import faulty
+from runner.reporting.mathml import faulty
 from runner.reporting.metric_titles import title
 from runner.reporting.nearest_limit import nearest_to_limit
 from runner.reporting.render import write_report

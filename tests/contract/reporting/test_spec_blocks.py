@@ -6,7 +6,7 @@ from runner.config.judgement import Bound
 from runner.reporting import outline
 from runner.reporting.comparison.runs import runs_document
 from runner.reporting.document import Notice, Table
-from runner.reporting.formulas import faulty
+from runner.reporting.mathml import faulty
 from runner.reporting.render import write_report
 from runner.reporting.run_report import run_document
 from runner.reporting.spec_blocks import COLUMNS, bound_text

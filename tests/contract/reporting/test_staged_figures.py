@@ -6,8 +6,8 @@ import xml.etree.ElementTree as ET
 import pytest
 from matplotlib.figure import Figure
 
-from runner.studies.thesis.diagrams.block_diagram import block_diagram, control_graph
-from runner.studies.thesis.diagrams.frames import frame_assignment
+from runner.papers.studies.thesis.diagrams.block_diagram import block_diagram, control_graph
+from runner.papers.studies.thesis.diagrams.frames import frame_assignment
 
 
 @pytest.fixture

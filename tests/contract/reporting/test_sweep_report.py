@@ -9,7 +9,7 @@ from fixtures.stored import GRID, NOISY
 from runner.base.quantities import quantity
 from runner.reporting import outline
 from runner.reporting.document import Curves, Maps, Playback, RunList, Text
-from runner.reporting.formulas import faulty
+from runner.reporting.mathml import faulty
 from runner.reporting.render import write_report
 from runner.reporting.sweep.report import sweep_document
 from runner.store import open_sweep, write_sweep

@@ -8,8 +8,8 @@ from pydantic import ValidationError
 
 from runner.base.errors import RunnerError, StoreError
 from runner.config.compose.files import group_options
+from runner.papers.reporting.published_claims import load_claims
 from runner.plugins.metric_units import unit_of
-from runner.reporting.published_claims import load_claims
 from runner.store import Run
 from runner.store.baselines import Band, Bands, baseline_path, check_run, load_baseline, renew_bands, shipped_baselines
 

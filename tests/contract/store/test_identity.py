@@ -94,7 +94,7 @@ def test_the_simulated_part_leaves_out_what_does_not_count():
 
 
 def test_a_part_counts_in_the_runs_that_use_it(monkeypatch):
-    point = EntryPoint("a", "runner.studies.xarm7.parts.three_joint", "runner.controller")
+    point = EntryPoint("a", "runner.papers.studies.xarm7.parts.three_joint", "runner.controller")
     other = {"controller": {"kind": "b"}}
     before = changed(), changed(**other)
     monkeypatch.setattr(identity, "added_parts", lambda group: (point,) if group == "controller" else ())
@@ -129,5 +129,5 @@ def test_of_a_part_the_content_counts(monkeypatch, tmp_path, old, new, same):
 
 
 def test_of_a_part_of_our_studies_the_source_is_its_folder():
-    names = [path.name for path in source_files("runner.studies.xarm7.parts.three_joint")]
+    names = [path.name for path in source_files("runner.papers.studies.xarm7.parts.three_joint")]
     assert names == ["__init__.py", "three_joint.py", "three_joint_kinematics.py", "xarm7_as_printed.py"]

@@ -15,22 +15,22 @@ from support.study_sections import texts
 
 from runner.base import quantities
 from runner.base.errors import RunnerError
-from runner.cli.reproduce import _chosen
+from runner.papers.commands.reproduce import _chosen
+from runner.papers.studies.benchmark import engines
+from runner.papers.studies.benchmark.cells import cells
+from runner.papers.studies.benchmark.figures import halves, said
+from runner.papers.studies.benchmark.horizon import grown
+from runner.papers.studies.benchmark.how_tuned import gains, keys_of, values_at_ends
+from runner.papers.studies.benchmark.late_and_limited import bearable
+from runner.papers.studies.benchmark.made import ARMS, CONDITIONS, turned
+from runner.papers.study.chapters import Chapters
+from runner.papers.study.check import never_failing
+from runner.papers.study.measured import findings
+from runner.papers.study.results import Results
+from runner.papers.study.study import load_study
 from runner.reporting.document import Table
-from runner.reporting.formulas import faulty
+from runner.reporting.mathml import faulty
 from runner.reporting.words import in_words
-from runner.studies.benchmark import engines
-from runner.studies.benchmark.cells import cells
-from runner.studies.benchmark.figures import halves, said
-from runner.studies.benchmark.horizon import grown
-from runner.studies.benchmark.how_tuned import gains, keys_of, values_at_ends
-from runner.studies.benchmark.late_and_limited import bearable
-from runner.studies.benchmark.made import ARMS, CONDITIONS, turned
-from runner.study.chapters import Chapters
-from runner.study.check import never_failing
-from runner.study.measured import findings
-from runner.study.results import Results
-from runner.study.study import load_study
 
 STUDY = load_study("benchmark")
 METRIC = "rms_tracking_error"

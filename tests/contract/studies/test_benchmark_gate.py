@@ -3,7 +3,7 @@
 import pytest
 
 from runner.config.compose.compose import compose
-from runner.study.study import load_study
+from runner.papers.study.study import load_study
 
 SWEEP = ("-m", "experiment=benchmark/macro,benchmark/planar", "hydra.sweeper.workers=0", "repetitions=8")
 

@@ -10,11 +10,11 @@ from fixtures.studies import Made
 
 pytest.importorskip("pybullet", reason="PyBullet is not installed")
 
-from runner.cli.reproduce import _chosen
+from runner.papers.commands.reproduce import _chosen
+from runner.papers.studies.engines import contact, same_arm
 from runner.plants.compiled_motion import CompiledStep
 from runner.plants.mujoco import Mujoco
 from runner.store import Run
-from runner.studies.engines import contact, same_arm
 
 
 @pytest.fixture

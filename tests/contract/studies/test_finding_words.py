@@ -4,8 +4,8 @@ import pytest
 from support.finding_words import typed_in_module
 
 from runner.base.paths import package_dir
-from runner.study.check import levels_in, typed_numbers
-from runner.study.study import load_study
+from runner.papers.study.check import levels_in, typed_numbers
+from runner.papers.study.study import load_study
 
 
 @pytest.mark.parametrize("study", ["thesis", "thesis_beyond", "xarm7", "meca500", "engines", "benchmark"])

@@ -4,8 +4,8 @@ import re
 
 import pytest
 
-from runner.study.measured import ANSWERS
-from runner.study.study import load_study
+from runner.papers.study.measured import ANSWERS
+from runner.papers.study.study import load_study
 
 FIRST = {"thesis": "answers.md", "thesis_beyond": "answers.md", "xarm7": "claims.md", "meca500": "statements.md"}
 QUOTED = re.compile(r'"([^"]+)" \([^)]*\b(?:page|section) \d[^)]*\)')

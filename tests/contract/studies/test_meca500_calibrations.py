@@ -9,12 +9,12 @@ from support.study_sections import blocks
 
 from runner.calibration.gravity import REST, GravityCalibration, Tool, WrenchCompensation
 from runner.calibration.tool_centre_point import identify_tool_centre_point
+from runner.papers.studies.meca500.figures import error, predicted
+from runner.papers.studies.meca500.gravity import exact_readings, force_step, swapped_moment_step
+from runner.papers.studies.meca500.tool_centre_point import common_point_covariance, independent_rows_covariance
+from runner.papers.study.measured import Finding
+from runner.papers.study.prose.signals import exponent, setting
 from runner.reporting.document import Curves, Table
-from runner.studies.meca500.figures import error, predicted
-from runner.studies.meca500.gravity import exact_readings, force_step, swapped_moment_step
-from runner.studies.meca500.tool_centre_point import common_point_covariance, independent_rows_covariance
-from runner.study.measured import Finding
-from runner.study.prose.signals import exponent, setting
 
 pytestmark = pytest.mark.bullet  # its study has walls and tools on the default plant
 GRAVITY = 9.81

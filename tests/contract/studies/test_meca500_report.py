@@ -7,7 +7,7 @@ from support.engines import DEFAULT_PLANT
 
 from runner.reporting import outline
 from runner.reporting.document import Curves, Notice, Playback, Table, Text
-from runner.reporting.formulas import faulty
+from runner.reporting.mathml import faulty
 from runner.reporting.render import write_report
 
 pytestmark = pytest.mark.bullet  # its study has walls and tools on the default plant

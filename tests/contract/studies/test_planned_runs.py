@@ -2,8 +2,8 @@
 
 import pytest
 
-from runner.study.names import study_names
-from runner.study.study import load_study
+from runner.papers.study.names import study_names
+from runner.papers.study.study import load_study
 
 SOME = {
     "thesis": {

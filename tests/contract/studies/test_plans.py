@@ -9,7 +9,7 @@ from support.thin_plans import Overrides
 from runner.base.engines import has_pybullet
 from runner.config.compose.compose import compose
 from runner.config.validation import validate
-from runner.study.study import load_study
+from runner.papers.study.study import load_study
 
 
 def parts(overrides: Overrides) -> set[str]:

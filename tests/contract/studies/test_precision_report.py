@@ -10,18 +10,18 @@ from scipy.special import ellipk
 from support.precision_runs import error
 from support.study_plans import cut
 
-from runner.cli.reproduce import _chosen
 from runner.config.compose.compose import compose
 from runner.config.validation import validate
+from runner.papers.commands.reproduce import _chosen
+from runner.papers.studies.precision import measure, tried
+from runner.papers.studies.precision.exact import Adaptive, Collocation, energy_drift
+from runner.papers.studies.precision.figures import large_enough
+from runner.papers.study.results import MissingError
+from runner.papers.study.study import load_study
 from runner.plants.rk4 import Rk4
 from runner.reporting.document import Table
 from runner.robots.model import RobotModel
 from runner.store import Run
-from runner.studies.precision import measure, tried
-from runner.studies.precision.exact import Adaptive, Collocation, energy_drift
-from runner.studies.precision.figures import large_enough
-from runner.study.results import MissingError
-from runner.study.study import load_study
 
 STUDY = load_study("precision")
 LENGTH, ANGLE = 0.5, 2.0  # m, rad from hanging

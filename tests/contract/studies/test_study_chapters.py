@@ -8,12 +8,12 @@ from fixtures.studies import Made
 from support.study_plans import STUDIES, chapters_made
 from support.study_sections import every_run, every_third, unfinished_texts
 
+from runner.papers.study.check import never_failing
+from runner.papers.study.study import load_study
 from runner.reporting import outline
 from runner.reporting.document import Document, Section
-from runner.reporting.formulas import faulty
+from runner.reporting.mathml import faulty
 from runner.store import Run
-from runner.study.check import never_failing
-from runner.study.study import load_study
 
 FILES = {study: chapters_made(study) for study in STUDIES}
 # The chapters of engines load arms into PyBullet; the runs of meca500 are made here, some of them at walls.

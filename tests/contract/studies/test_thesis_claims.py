@@ -4,8 +4,8 @@ import pytest
 from pydantic import ValidationError
 
 from runner.config.compose.files import group_options
+from runner.papers.reporting.published_claims import CONTRADICTION, FACTOR, PublishedClaim, judge, load_claims
 from runner.plugins.metric_units import unit_of
-from runner.reporting.published_claims import CONTRADICTION, FACTOR, PublishedClaim, judge, load_claims
 
 CLAIMS = load_claims("thesis")
 PAIRS = [(claim, where) for claim in CLAIMS for where in (claim, claim.like) if where is not None]

@@ -6,10 +6,10 @@ import pytest
 from fixtures.studies import Made
 from support.study_sections import every_run
 
+from runner.papers.studies.thesis import figures
+from runner.papers.study.measured import findings
 from runner.reporting.document import Document, Section
-from runner.reporting.formulas import faulty
-from runner.studies.thesis import figures
-from runner.study.measured import findings
+from runner.reporting.mathml import faulty
 
 
 @pytest.mark.parametrize(("claim", "ends"), [(3, (0.1, 0.15)), (4, (0.007, 0.044))])

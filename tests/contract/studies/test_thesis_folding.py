@@ -8,8 +8,8 @@ import pyarrow
 import pytest
 from fixtures.studies import Made
 
+from runner.papers.studies.thesis import figures, folding
 from runner.store import Run
-from runner.studies.thesis import figures, folding
 
 NAME = "folding/full_equations/tip_goal/quintic"
 

@@ -9,13 +9,13 @@ from fixtures.studies import Made
 from scipy import stats
 from support.study_sections import every_run, texts, unfinished_texts
 
-from runner.reporting.published_claims import load_claims
+from runner.papers.reporting.published_claims import load_claims
+from runner.papers.studies.thesis import how_sure
+from runner.papers.studies.thesis.how_sure import DRAWN, Judged, judge_by_seeds
+from runner.papers.study.measured import Finding
+from runner.papers.study.study import load_study
 from runner.statistics.proportion import count_share
 from runner.store import Run
-from runner.studies.thesis import how_sure
-from runner.studies.thesis.how_sure import DRAWN, Judged, judge_by_seeds
-from runner.study.measured import Finding
-from runner.study.study import load_study
 from runner.sweeps.job import run
 
 CLAIMS = load_claims("thesis")

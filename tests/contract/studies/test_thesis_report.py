@@ -7,7 +7,7 @@ import pytest
 
 from runner.reporting import outline
 from runner.reporting.document import Curves, Picture, Table, Verdicts
-from runner.reporting.formulas import faulty
+from runner.reporting.mathml import faulty
 from runner.reporting.outline import Places
 from runner.reporting.render import write_report
 from runner.reporting.verdicts import tallies

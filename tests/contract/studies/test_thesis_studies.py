@@ -9,11 +9,11 @@ import scipy.signal
 from fixtures.studies import Made
 from support.study_sections import every_run, texts
 
+from runner.papers.studies.thesis_beyond import force
+from runner.papers.study.report import load_checklist
 from runner.reporting.document import Origin, Section, Table
 from runner.reporting.figures import torque_and_error
 from runner.store import Run
-from runner.studies.thesis_beyond import force
-from runner.study.report import load_checklist
 
 STUDIES = ("coupling", "mass_ratio", "folding", "stretch", "reference_velocity", "turns", "whole_body")
 

@@ -9,11 +9,11 @@ from support.recorded_runs import recorded
 from support.study_plans import RECORDED, meca500_calibrations, meca500_jobs, planned, recorded_jobs, thesis_jobs
 from support.thin_plans import make_calibrations, make_runs
 
-from runner.reporting.formulas import faulty
+from runner.papers.study.check import never_failing
+from runner.papers.study.measured import findings
+from runner.papers.study.study import load_study
+from runner.reporting.mathml import faulty
 from runner.store import Run
-from runner.study.check import never_failing
-from runner.study.measured import findings
-from runner.study.study import load_study
 
 # True of real numbers, which take minutes; from runs cut to a moment findings do not hold.
 pytestmark = [pytest.mark.slow, pytest.mark.bullet]

@@ -5,7 +5,7 @@ import pytest
 from pydantic import ValidationError
 
 from runner.config.compose.files import group_options
-from runner.reporting.published_claims import CONTRADICTION, Extent, PublishedClaim, judge_motion, load_claims
+from runner.papers.reporting.published_claims import CONTRADICTION, Extent, PublishedClaim, judge_motion, load_claims
 from runner.store.baselines import shipped_baselines
 
 CLAIMS = load_claims("xarm7")

@@ -5,16 +5,16 @@ import re
 import numpy as np
 import pytest
 
+from runner.papers.study.chapters import Chapters
+from runner.papers.study.measured import findings
+from runner.papers.study.report import study_document
+from runner.papers.study.results import Results
+from runner.papers.study.study import load_study
 from runner.reporting import outline
 from runner.reporting.document import Curves, Notice, Picture, Playback, Section, Table, Text, Verdicts
-from runner.reporting.formulas import faulty
+from runner.reporting.mathml import faulty
 from runner.reporting.render import write_report
 from runner.reporting.words import PRESET
-from runner.study.chapters import Chapters
-from runner.study.measured import findings
-from runner.study.report import study_document
-from runner.study.results import Results
-from runner.study.study import load_study
 
 STUDIES = ("why_it_failed", "null_space", "rates", "servo", "payload", "torque_level")
 TITLES = {"why_it_failed": "Why the second part failed"}  # of those that the checklist names

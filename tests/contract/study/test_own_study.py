@@ -10,16 +10,16 @@ from support.pdf_text import pages
 from runner.base.errors import RunnerError
 from runner.base.paths import example_study_dir
 from runner.cli.main import dispatch
+from runner.papers.study.chapters import Chapters
+from runner.papers.study.check import problems
+from runner.papers.study.execute import make_all
+from runner.papers.study.measured import findings
+from runner.papers.study.names import find_study, study_names, write_new
+from runner.papers.study.report import study_document
+from runner.papers.study.results import Results
+from runner.papers.study.study import load_study
 from runner.reporting.document import Table
 from runner.reporting.render import render_html, render_pdf
-from runner.study.chapters import Chapters
-from runner.study.check import problems
-from runner.study.execute import make_all
-from runner.study.measured import findings
-from runner.study.names import find_study, study_names, write_new
-from runner.study.report import study_document
-from runner.study.results import Results
-from runner.study.study import load_study
 from runner.sweeps.job import run
 
 ABOUT = "title: T\nsource: S\nabstract: A\nchapters: [one.md]\n"

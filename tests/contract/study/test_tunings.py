@@ -4,12 +4,12 @@ import pytest
 import yaml
 
 from runner.base.errors import RunnerError
-from runner.study.execute import make_all
-from runner.study.grids import Grids
-from runner.study.items import Way
-from runner.study.study import load_study
-from runner.study.tune import find_gains
-from runner.study.tunings import put_in, read_gains, write_gains
+from runner.papers.study.execute import make_all
+from runner.papers.study.grids import Grids
+from runner.papers.study.items import Way
+from runner.papers.study.study import load_study
+from runner.papers.study.tune import find_gains
+from runner.papers.study.tunings import put_in, read_gains, write_gains
 
 HERE = "hydra.sweeper.workers=0"
 RUNS = """
@@ -145,7 +145,7 @@ def test_the_gains_of_a_tuning_have_numbers():
 
 
 def test_a_law_of_the_reader_s_has_its_ranges_beside_its_module(paper, tmp_path):
-    from runner.study.code import UserPlugin
+    from runner.papers.study.code import UserPlugin
 
     mine = tmp_path / "mine"
     (mine / "controller").mkdir(parents=True)

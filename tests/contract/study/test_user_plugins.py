@@ -7,9 +7,9 @@ from pathlib import Path
 import pytest
 
 from runner.base.errors import RunnerError
-from runner.study.code import read_user_plugins
-from runner.study.grids import Grids
-from runner.study.study import load_study
+from runner.papers.study.code import read_user_plugins
+from runner.papers.study.grids import Grids
+from runner.papers.study.study import load_study
 
 EXAMPLE = Path(__file__).parents[3] / "examples" / "own_robot"
 LAW = "gravity_pd"

@@ -5,9 +5,9 @@ import io
 
 import pytest
 
-from runner.audit.audit import as_csv, audit, audit_all, counts
-from runner.audit.sources import sources
-from runner.audit.verdict import SAMPLES, VERDICTS
+from runner.papers.audit.audit import as_csv, audit, audit_all, counts
+from runner.papers.audit.sources import sources
+from runner.papers.audit.verdict import SAMPLES, VERDICTS
 
 
 @pytest.fixture(scope="session")

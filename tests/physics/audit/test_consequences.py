@@ -3,9 +3,9 @@
 import numpy as np
 import pytest
 
-from runner.audit.consequence import simulate_consequence
-from runner.audit.entry import entries
-from runner.audit.sources import sources
+from runner.papers.audit.consequence import simulate_consequence
+from runner.papers.audit.entry import entries
+from runner.papers.audit.sources import sources
 
 NAMES = sorted(
     {(source, entry.consequence) for source in sources() for _, entry in entries(source) if entry.consequence}

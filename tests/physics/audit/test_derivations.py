@@ -3,14 +3,14 @@
 import numpy as np
 import pytest
 
-from runner.audit.derivations import derivative, jacobian_by_differences, rotation
-from runner.audit.entry import entries, parts
-from runner.audit.evaluation import evaluate
-from runner.audit.sources import derivation_of, sources
-from runner.audit.verdict import Check, error
-from runner.base.expressions.parser import parse
-from runner.studies.meca500.equations.derivations import meca500
-from runner.studies.xarm7.equations.derivations import xarm7, xarm7_inverse
+from runner.papers.audit.derivations import derivative, jacobian_by_differences, rotation
+from runner.papers.audit.entry import entries, parts
+from runner.papers.audit.evaluation import evaluate
+from runner.papers.audit.sources import derivation_of, sources
+from runner.papers.audit.verdict import Check, error
+from runner.papers.expressions.parser import parse
+from runner.papers.studies.meca500.equations.derivations import meca500
+from runner.papers.studies.xarm7.equations.derivations import xarm7, xarm7_inverse
 
 SAMPLES = 40
 

@@ -2,10 +2,10 @@
 
 import pytest
 
-from runner.audit import audit as module
-from runner.audit.audit import differences, inventory
-from runner.audit.entry import entries
-from runner.audit.sources import sources
+from runner.papers.audit import audit as module
+from runner.papers.audit.audit import differences, inventory
+from runner.papers.audit.entry import entries
+from runner.papers.audit.sources import sources
 
 
 @pytest.mark.parametrize("source", sources())

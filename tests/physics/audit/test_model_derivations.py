@@ -3,13 +3,13 @@
 import numpy as np
 import pytest
 
-from runner.audit.audit import audit
-from runner.audit.entry import entries
-from runner.audit.model_derivations import DERIVATIONS, audited_arm, sample
-from runner.audit.sources import Source, consequence_of, derivation_of
-from runner.audit.verdict import AuditError
 from runner.base.errors import RunnerError
 from runner.base.paths import conf_dir
+from runner.papers.audit.audit import audit
+from runner.papers.audit.entry import entries
+from runner.papers.audit.model_derivations import DERIVATIONS, audited_arm, sample
+from runner.papers.audit.sources import Source, consequence_of, derivation_of
+from runner.papers.audit.verdict import AuditError
 
 ROBOTS = sorted(path.stem for path in (conf_dir() / "robot").glob("*.yaml"))
 
@@ -160,7 +160,7 @@ def test_python_of_a_folder_runs_where_it_is_allowed(paper):
                    "  printed: {elements: {h: x/2}}}]")  # fmt: skip
     (folder / "equations" / "derivations").mkdir()
     (folder / "equations" / "derivations" / "own.py").write_text(
-        "from runner.audit.derivations import Derivations\n"
+        "from runner.papers.audit.derivations import Derivations\n"
         "def draw(count, generator): return {'x': generator.uniform(0, 1, count)}\n"
         "half = Derivations(lambda s: {'h': s['x'] / 2}, lambda s: {'h': s['x'] - s['x'] / 2}, ('one', 'two'))\n"
     )

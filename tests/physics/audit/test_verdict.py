@@ -3,9 +3,9 @@
 import numpy as np
 import pytest
 
-from runner.audit.entry import Emendation, Entry, Printed, entries, parts
-from runner.audit.sources import source_of, sources
-from runner.audit.verdict import AuditError, Check
+from runner.papers.audit.entry import Emendation, Entry, Printed, entries, parts
+from runner.papers.audit.sources import source_of, sources
+from runner.papers.audit.verdict import AuditError, Check
 
 RIGHT = "l1 + l2*c2"
 DERIVATION = {"derivation": "xarm7.tip", "unit": "cm"}

@@ -7,7 +7,7 @@ from support.engines import ASKED
 from runner.reporting import outline
 from runner.reporting.comparison.runs import runs_document
 from runner.reporting.document import Notice, RunList, Table
-from runner.reporting.formulas import faulty
+from runner.reporting.mathml import faulty
 from runner.reporting.render import SHOWN
 from runner.reporting.run_report import run_document
 from runner.reporting.sweep.report import sweep_document

@@ -4,9 +4,9 @@ import numpy as np
 import pytest
 
 from runner.base.errors import SimulationError
+from runner.papers.studies.thesis_beyond.cantilever import clamped_arm
 from runner.plants.rk4_flexible_links import FlexibleLinks
 from runner.robots.vibration import Beam, cut
-from runner.studies.thesis_beyond.cantilever import clamped_arm
 
 TICK = 1e-3  # s, of two steps
 TORQUE = 3e3 * np.ones(1)  # N m

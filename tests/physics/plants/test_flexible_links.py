@@ -8,12 +8,12 @@ from support.arms import checked
 from support.physics import assert_energy_kept
 
 from runner.base.errors import SimulationError
+from runner.papers.studies.thesis_beyond.cantilever import clamped_arm
 from runner.plants import PLANTS
 from runner.plants.computation import EXACT
 from runner.plants.rk4 import Rk4
 from runner.plants.rk4_flexible_links import BeamConfig, FlexibleLinks, Rk4FlexibleLinksConfig
 from runner.robots.vibration import Beam, cut, stiffen_robot
-from runner.studies.thesis_beyond.cantilever import clamped_arm
 
 LENGTH = 1.5  # m
 LOCKED = 1e12  # kg m^2, a motor that does not turn

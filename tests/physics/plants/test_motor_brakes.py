@@ -3,10 +3,10 @@
 import numpy as np
 import pytest
 
+from runner.papers.studies.thesis_beyond.cantilever import clamped_arm
 from runner.plants.flexible_joints import Flexibility, FlexibleJoints
 from runner.robots.description import find_urdf, read_urdf
 from runner.robots.model import RobotModel
-from runner.studies.thesis_beyond.cantilever import clamped_arm
 
 TICK = 2e-3  # s, of two steps
 SPIN = 0.7  # rad/s

@@ -7,8 +7,8 @@ import pinocchio as pin
 import pytest
 from support.arms import checked
 
+from runner.papers.studies.thesis_beyond.cantilever import cantilever_roots
 from runner.robots.vibration import Beam, moving_links, parts_of, span, stiffen_robot
-from runner.studies.thesis_beyond.cantilever import cantilever_roots
 
 
 @pytest.mark.parametrize(

@@ -7,10 +7,10 @@ import numpy as np
 import pytest
 from scipy.optimize import minimize
 
+from runner.papers.studies.meca500.equations.derivations import meca500 as report
 from runner.robots.description import find_urdf, read_urdf, with_payloads
 from runner.robots.inertials import Payload
 from runner.robots.model import RobotModel
-from runner.studies.meca500.equations.derivations import meca500 as report
 
 TABLE = [replace(row, a=row.a / 1000.0, d=row.d / 1000.0) for row in report.TABLE]  # in m
 

@@ -8,10 +8,10 @@ import pytest
 from support.arms import checked
 
 from runner.base.errors import ConfigError
+from runner.papers.studies.thesis.denavit_hartenberg import DenavitHartenbergRow, denavit_hartenberg, frames
 from runner.robots.model import RobotModel
 from runner.robots.mounting import mount
 from runner.schema.values import MountConfig
-from runner.studies.thesis.denavit_hartenberg import DenavitHartenbergRow, denavit_hartenberg, frames
 
 AT_TIP = MountConfig(frame="tip", translation=[0.0, 0.0, 0.0], rotation=[np.pi / 2, 0.0, np.pi / 2])
 # Recovered Table 5.1, and torques and tip positions of the printed equations at one state.

@@ -5,8 +5,8 @@ import pinocchio as pin
 import pytest
 from support.arms import checked
 
+from runner.papers.studies.thesis_beyond.cantilever import cantilever, cantilever_roots, clamped_arm, frequency_errors
 from runner.robots.vibration import Beam, Mode, cut, find_modes, largest_rate, stiffen_robot
-from runner.studies.thesis_beyond.cantilever import cantilever, cantilever_roots, clamped_arm, frequency_errors
 
 
 def test_of_one_mass_on_a_spring():

@@ -9,12 +9,12 @@ from support.physics import assert_order
 
 from runner.base.errors import ConfigError
 from runner.config.compose.compose import compose
+from runner.papers.studies.thesis_beyond.cantilever import cantilever_roots
 from runner.plants import PLANTS
 from runner.robots.robot import with_armature
 from runner.robots.vibration import Mode, stiffen_robot
 from runner.simulation.assembly import assemble
 from runner.store import simulated_part
-from runner.studies.thesis_beyond.cantilever import cantilever_roots
 from runner.trajectories.shaped import zero_vibration
 
 MACRO = ("robot=macro", "plant=rk4_flexible_links", "noise=none", "torque_limits=none")

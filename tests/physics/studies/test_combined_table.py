@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 from support.arms import checked
 
-from runner.studies.thesis.denavit_hartenberg import denavit_hartenberg, frames
+from runner.papers.studies.thesis.denavit_hartenberg import denavit_hartenberg, frames
 
 # The thesis' table 5.1 is lost; this is what its appendix was derived with.
 THETA = np.radians([90.0, 0.0, 180.0, 180.0, 0.0, 90.0])

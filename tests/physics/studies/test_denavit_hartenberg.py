@@ -5,8 +5,8 @@ import pytest
 from support.arms import model_of
 
 from runner.base.errors import ConfigError
+from runner.papers.studies.thesis.denavit_hartenberg import denavit_hartenberg, frames, transform
 from runner.robots.model import RobotModel
-from runner.studies.thesis.denavit_hartenberg import denavit_hartenberg, frames, transform
 
 ZERO_INERTIAL = '<inertial><mass value="1"/><inertia ixx="1" iyy="1" izz="1" ixy="0" ixz="0" iyz="0"/></inertial>'
 

@@ -6,10 +6,10 @@ from scipy.integrate import solve_ivp
 
 from runner.config.compose.compose import compose
 from runner.controllers.force.admittance_filter import Admittance, AdmittanceFilter
-from runner.studies.meca500.frequency_response import frequency_response, sampled_frequency_response
-from runner.studies.meca500.plan import law_in
-from runner.studies.meca500.step_response import critical_response
-from runner.study.study import load_study
+from runner.papers.studies.meca500.frequency_response import frequency_response, sampled_frequency_response
+from runner.papers.studies.meca500.plan import law_in
+from runner.papers.studies.meca500.step_response import critical_response
+from runner.papers.study.study import load_study
 
 # Light, heavy and critical damping, none, hand guiding, a free mass.
 LAW = Admittance(

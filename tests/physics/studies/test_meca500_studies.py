@@ -5,7 +5,7 @@ import pytest
 from support.thin_plans import make_runs
 
 from runner.controllers.stability import stiffest_wall
-from runner.studies.meca500.figures import (
+from runner.papers.studies.meca500.figures import (
     bounces,
     displacement,
     filtered_turn,
@@ -15,11 +15,11 @@ from runner.studies.meca500.figures import (
     stopped_by,
     wrenches,
 )
-from runner.studies.meca500.frequency_response import fitted_response, sampled_frequency_response
-from runner.studies.meca500.plan import GRIDS, law_in
-from runner.studies.meca500.step_response import step
-from runner.study.prose.signals import highest_of, largest_of, limit_margin, norm, turns
-from runner.study.study import load_study
+from runner.papers.studies.meca500.frequency_response import fitted_response, sampled_frequency_response
+from runner.papers.studies.meca500.plan import GRIDS, law_in
+from runner.papers.studies.meca500.step_response import step
+from runner.papers.study.prose.signals import highest_of, largest_of, limit_margin, norm, turns
+from runner.papers.study.study import load_study
 
 REPORTED = GRIDS.value("step", "reported")  # s, between two reports of the real controller
 

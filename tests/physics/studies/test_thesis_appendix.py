@@ -6,12 +6,12 @@ from fractions import Fraction
 import numpy as np
 import pytest
 
-from runner.audit.entry import Entry, entries, form_values
 from runner.base.errors import RunnerError
-from runner.studies.thesis.equations.derivations import thesis_appendix
-from runner.studies.thesis.equations.derivations.thesis import symbols
-from runner.studies.thesis.equations.derivations.thesis_appendix import elements
-from runner.studies.thesis.equations.derivations.thesis_arms import COMBINED
+from runner.papers.audit.entry import Entry, entries, form_values
+from runner.papers.studies.thesis.equations.derivations import thesis_appendix
+from runner.papers.studies.thesis.equations.derivations.thesis import symbols
+from runner.papers.studies.thesis.equations.derivations.thesis_appendix import elements
+from runner.papers.studies.thesis.equations.derivations.thesis_arms import COMBINED
 
 DYNAMICS = COMBINED.audited.derivations("model.dynamics")
 TORQUES = range(1, 7)

@@ -11,7 +11,7 @@ from support.graph_layout import assert_loop_closed, check_structure, check_text
 from runner.config.compose.compose import compose
 from runner.controllers.operational_space.operational_space import OperationalSpace
 from runner.controllers.operational_space.whole_body import WholeBody, WholeBodyConfig
-from runner.studies.thesis.diagrams.block_diagram import control_graph, describe
+from runner.papers.studies.thesis.diagrams.block_diagram import control_graph, describe
 
 RUNS = {
     "figure 3.4": "figure_3_5", "figure 3.7": "figure_3_10", "figure 5.2": "whole_body", "figure 5.4": "figure_5_3",

@@ -6,14 +6,14 @@ from collections import Counter
 import numpy as np
 import pytest
 
-from runner.audit.derivations import along
-from runner.audit.entry import entries, parts, values_at
-from runner.audit.evaluation import evaluate
-from runner.audit.verdict import AuditError, Check
-from runner.base.expressions.parser import parse
-from runner.studies.thesis.equations.derivations import thesis_measures, thesis_operational
-from runner.studies.thesis.equations.derivations.thesis import regular_symbols, symbols, symbols_at
-from runner.studies.thesis.equations.derivations.thesis_arms import COMBINED, MACRO, MINI
+from runner.papers.audit.derivations import along
+from runner.papers.audit.entry import entries, parts, values_at
+from runner.papers.audit.evaluation import evaluate
+from runner.papers.audit.verdict import AuditError, Check
+from runner.papers.expressions.parser import parse
+from runner.papers.studies.thesis.equations.derivations import thesis_measures, thesis_operational
+from runner.papers.studies.thesis.equations.derivations.thesis import regular_symbols, symbols, symbols_at
+from runner.papers.studies.thesis.equations.derivations.thesis_arms import COMBINED, MACRO, MINI
 
 WRONG = {
     "J_ij",

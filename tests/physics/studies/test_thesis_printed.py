@@ -3,14 +3,14 @@
 import numpy as np
 import pytest
 
-from runner.robots.description import find_urdf, read_urdf
-from runner.robots.model import RobotModel
-from runner.studies.thesis.equations.derivations.thesis_printed import (
+from runner.papers.studies.thesis.equations.derivations.thesis_printed import (
     compare,
     gravity_torque,
     linear_jacobian,
     mass_matrix,
 )
+from runner.robots.description import find_urdf, read_urdf
+from runner.robots.model import RobotModel
 
 
 def thesis_arm(name: str) -> RobotModel:

@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from runner.studies.xarm7.parts.xarm7_as_printed import PrintedJacobian
+from runner.papers.studies.xarm7.parts.xarm7_as_printed import PrintedJacobian
 
 POSTURES = np.random.default_rng(7).uniform(-1.5, 1.5, (50, 7))
 

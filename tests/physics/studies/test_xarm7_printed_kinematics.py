@@ -3,10 +3,10 @@
 import numpy as np
 import pytest
 
-from runner.studies.xarm7.equations.derivations.xarm7 import THETA1, THETA2, pose
-from runner.studies.xarm7.equations.derivations.xarm7_inverse import printed_inverse, printed_tip
-from runner.studies.xarm7.kinematics import random_postures
-from runner.studies.xarm7.parts.three_joint_kinematics import BRANCHES, MOVING, ThreeJointArm
+from runner.papers.studies.xarm7.equations.derivations.xarm7 import THETA1, THETA2, pose
+from runner.papers.studies.xarm7.equations.derivations.xarm7_inverse import printed_inverse, printed_tip
+from runner.papers.studies.xarm7.kinematics import random_postures
+from runner.papers.studies.xarm7.parts.three_joint_kinematics import BRANCHES, MOVING, ThreeJointArm
 
 LINE = np.array([[x, y, 0.1508] for x in (0.643, 0.6043) for y in np.linspace(-0.2, 0.2, 9)])
 

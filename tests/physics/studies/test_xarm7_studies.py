@@ -9,13 +9,13 @@ import pytest
 from support.study_plans import xarm7_studies
 from support.thin_plans import make_runs
 
+from runner.papers.studies.xarm7.figures import ROWS, drifts, first_saturation, lag, sag
+from runner.papers.studies.xarm7.kinematics import random_postures
+from runner.papers.studies.xarm7.null_space import between_commands
+from runner.papers.studies.xarm7.payload import largest_payloads, lost_when, stretched
+from runner.papers.studies.xarm7.why_it_failed import invert, jacobians
+from runner.papers.study.prose.signals import largest_of, moved, norm, vector
 from runner.store import Run
-from runner.studies.xarm7.figures import ROWS, drifts, first_saturation, lag, sag
-from runner.studies.xarm7.kinematics import random_postures
-from runner.studies.xarm7.null_space import between_commands
-from runner.studies.xarm7.payload import largest_payloads, lost_when, stretched
-from runner.studies.xarm7.why_it_failed import invert, jacobians
-from runner.study.prose.signals import largest_of, moved, norm, vector
 from runner.sweeps.job import run
 
 NULL_SPACE_BOUND, TORQUE_BOUND = 1e-6, 1e-4  # m

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from runner.base.errors import ConfigError
-from runner.studies.xarm7.parts.three_joint_kinematics import BRANCHES, Branch, ThreeJointArm
+from runner.papers.studies.xarm7.parts.three_joint_kinematics import BRANCHES, Branch, ThreeJointArm
 
 WRIST = 0.75
 LINE = [np.array([x, y, 0.1508]) for x in (0.643, 0.6043) for y in np.linspace(-0.2, 0.2, 41)]

@@ -5,10 +5,10 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from runner.audit.evaluation import Numbered, Values, evaluate, evaluate_sides
 from runner.base.errors import RunnerError
-from runner.base.expressions.grammar import ExpressionError
-from runner.base.expressions.parser import parse
+from runner.papers.audit.evaluation import Numbered, Values, evaluate, evaluate_sides
+from runner.papers.expressions.grammar import ExpressionError
+from runner.papers.expressions.parser import parse
 
 X = np.array([0.3, -1.2, 2.0])
 Y = np.array([1.5, 0.4, -0.7])

@@ -2,9 +2,9 @@
 
 import pytest
 
-from runner.base.expressions.difference import difference
-from runner.base.expressions.parser import parse
-from runner.base.expressions.typesetting import typeset
+from runner.papers.expressions.difference import difference
+from runner.papers.expressions.parser import parse
+from runner.papers.expressions.typesetting import typeset
 
 
 def found(first, second):

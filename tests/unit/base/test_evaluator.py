@@ -6,7 +6,7 @@ from pathlib import Path
 import pytest
 from support.hostile_expressions import FUNCTIONS, SCOPE, VALUES, Length
 
-from runner.base.expressions.evaluator import LONGEST, Budget, ExpressionError, Scope, parse
+from runner.papers.expressions.evaluator import LONGEST, Budget, ExpressionError, Scope, parse
 
 
 def value(text, operations=1_000_000):

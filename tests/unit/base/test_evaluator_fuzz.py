@@ -7,9 +7,9 @@ import numpy as np
 import pytest
 from support.hostile_expressions import attempt, expression
 
-from runner.audit.evaluation import evaluate
-from runner.base.expressions.grammar import ExpressionError
-from runner.base.expressions.parser import parse
+from runner.papers.audit.evaluation import evaluate
+from runner.papers.expressions.grammar import ExpressionError
+from runner.papers.expressions.parser import parse
 
 SEED, COUNT = 1, 20_000
 BYTES = 50_000_000

@@ -2,9 +2,9 @@
 
 import pytest
 
-from runner.base.expressions.evaluator import Budget, Scope
-from runner.base.expressions.grammar import ExpressionError
-from runner.base.expressions.insertions import fill, insertions
+from runner.papers.expressions.evaluator import Budget, Scope
+from runner.papers.expressions.grammar import ExpressionError
+from runner.papers.expressions.insertions import fill, insertions
 
 SCOPE = Scope({"of": lambda group: group["a"]["b"]}, {"x": 2.5, "group": {"a": 1}})
 

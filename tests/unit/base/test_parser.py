@@ -2,9 +2,9 @@
 
 import pytest
 
-from runner.base.expressions.grammar import LONGEST, ExpressionError
-from runner.base.expressions.parser import parse
-from runner.base.expressions.tree import Call, Name, Number, Power, Product, Sum, parts
+from runner.papers.expressions.grammar import LONGEST, ExpressionError
+from runner.papers.expressions.parser import parse
+from runner.papers.expressions.tree import Call, Name, Number, Power, Product, Sum, parts
 
 
 def names(node):

@@ -1,8 +1,8 @@
 """Shortened expressions: every marked term stays."""
 
-from runner.base.expressions.difference import difference
-from runner.base.expressions.parser import parse
-from runner.base.expressions.tree import ELLIPSIS, holds, shorten_expression, size, symbols
+from runner.papers.expressions.difference import difference
+from runner.papers.expressions.parser import parse
+from runner.papers.expressions.tree import ELLIPSIS, holds, shorten_expression, size, symbols
 
 LONG = "a*b*c*d*e*f*g + l4*cos(q1)*(c1*c2*c3 + s1*s2*s3 + c4*s4) - h*i*j*k*l*m*n + o*p"
 

@@ -2,8 +2,8 @@
 
 import pytest
 
-from runner.base.expressions.parser import parse
-from runner.base.expressions.typesetting import linear, symbol, typeset
+from runner.papers.expressions.parser import parse
+from runner.papers.expressions.typesetting import linear, symbol, typeset
 from runner.reporting import formulas
 
 

@@ -8,14 +8,14 @@ import numpy as np
 import pytest
 from support.arms import model_of, urdf_of
 
+from runner.papers.studies.thesis.base_axis import distance_between
+from runner.papers.studies.thesis.diagrams.block_diagram import ControlGraph, Edge, Node, block_diagram, control_graph
+from runner.papers.studies.thesis.diagrams.frames import frame_assignment
+from runner.papers.studies.thesis.diagrams.workspace import _best_samples, workspace_sphere
 from runner.reporting.charts.arm import arm_motion
 from runner.reporting.charts.canvas import Camera, circle
 from runner.robots.model import RobotModel
 from runner.robots.workspace import analyse
-from runner.studies.thesis.base_axis import distance_between
-from runner.studies.thesis.diagrams.block_diagram import ControlGraph, Edge, Node, block_diagram, control_graph
-from runner.studies.thesis.diagrams.frames import frame_assignment
-from runner.studies.thesis.diagrams.workspace import _best_samples, workspace_sphere
 
 START, GOAL = np.array([0.0, 1.0, 1.0]), np.array([0.1679, -0.7571, 0.4255])
 

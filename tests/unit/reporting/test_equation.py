@@ -2,7 +2,7 @@
 
 import pytest
 
-from runner.reporting.equation import (
+from runner.papers.reporting.equation import (
     FOLDED,
     SHOWN,
     Equation,

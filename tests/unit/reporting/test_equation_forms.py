@@ -2,9 +2,9 @@
 
 import pytest
 
-from runner.audit.entry import Emendation, Entry, Form, Printed
-from runner.audit.verdict import CheckedEquation
-from runner.reporting.audit.forms import RightElements, forms_of
+from runner.papers.audit.entry import Emendation, Entry, Form, Printed
+from runner.papers.audit.verdict import CheckedEquation
+from runner.papers.reporting.audit_forms import RightElements, forms_of
 
 LONG = " + ".join(f"x{i}*y{i}*z{i}" for i in range(20))
 

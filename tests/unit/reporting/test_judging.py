@@ -4,7 +4,7 @@ from collections.abc import Mapping
 
 import pytest
 
-from runner.reporting.published_claims import (
+from runner.papers.reporting.published_claims import (
     CONTRADICTION,
     PublishedClaim,
     Simulated,

@@ -1,6 +1,6 @@
 """Marks on parts of a string that the other text lacks."""
 
-from runner.reporting.audit.forms import LONG, cut, pieces
+from runner.papers.reporting.audit_forms import LONG, cut, pieces
 
 
 def test_what_the_other_text_lacks_is_marked():

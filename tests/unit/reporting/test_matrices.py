@@ -2,9 +2,9 @@
 
 import pytest
 
-from runner.base.expressions.parser import parse
-from runner.base.expressions.tree import Call, Name, parts
-from runner.reporting.audit.forms import gather_elements
+from runner.papers.expressions.parser import parse
+from runner.papers.expressions.tree import Call, Name, parts
+from runner.papers.reporting.audit_forms import gather_elements
 
 
 def elements(*names):

@@ -1,7 +1,7 @@
 """Strings of equations compared piece by piece, and cut to what differs."""
 
-from runner.base.expressions.tree import ELLIPSIS
-from runner.reporting.audit.forms import LONG, cut, pieces
+from runner.papers.expressions.tree import ELLIPSIS
+from runner.papers.reporting.audit_forms import LONG, cut, pieces
 
 
 def test_a_lost_bracket_leaves_a_mark_where_it_was():

@@ -5,8 +5,8 @@ import yaml
 
 from runner.base.errors import RunnerError
 from runner.base.paths import studies_with
-from runner.reporting import published_claims
-from runner.reporting.published_claims import CLAIMS, load_claims, load_statements
+from runner.papers.reporting import published_claims
+from runner.papers.reporting.published_claims import CLAIMS, load_claims, load_statements
 
 
 @pytest.fixture

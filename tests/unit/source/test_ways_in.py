@@ -70,7 +70,7 @@ def test_its_test_is_there(row):
 def test_the_modules_listed_are_those_that_read_something():
     listed = {name for row in ROWS for name in re.findall(r"`([\w/]+\.py)`", row[2])}
     places = {f"hydra_plugins/{path.name}": path for path in (ROOT / "hydra_plugins").glob("*.py")}
-    studies = ROOT / "runner/studies"
+    studies = ROOT / "runner/papers/studies"
     for path in (ROOT / "runner").rglob("*.py"):
         if studies not in path.parents:
             places[path.relative_to(ROOT / "runner").as_posix()] = path

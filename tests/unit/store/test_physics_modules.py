@@ -9,7 +9,7 @@ from runner.store import physics, syntax
 OTHERS = {
     "__init__.py", "__main__.py", "analysis", "api", "audit", "base/arrays.py", "base/bounded_json.py",
     "base/bounded_yaml.py", "base/cache.py", "base/data_file.py", "base/dotted_keys.py", "base/engine_output.py",
-    "base/engines.py", "base/errors.py", "base/expressions", "base/former_names.py", "base/lazy_modules.py",
+    "base/engines.py", "base/errors.py", "runner/papers/expressions", "base/former_names.py", "base/lazy_modules.py",
     "base/limits.py", "base/machine.py", "base/paths.py", "base/progress.py", "base/quantities.py",
     "base/sanitize.py", "base/tables.py", "base/ticks.py", "cli", "config/compose", "config/composed.py",
     "config/dependent_keys.py", "config/engine_check.py", "config/json_schema.py", "config/judgement.py",

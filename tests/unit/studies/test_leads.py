@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from runner.studies.benchmark.cells import Entry, Lead, leads
+from runner.papers.studies.benchmark.cells import Entry, Lead, leads
 
 APART = np.arange(0.1, 0.65, 0.1)  # logarithms of ratios, one for each of six seeds
 ONE_TURNED = APART * [-1.0, 1.0, 1.0, 1.0, 1.0, 1.0]  # the smallest of them has the other sign

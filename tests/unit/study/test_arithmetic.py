@@ -3,7 +3,7 @@
 import pytest
 
 from runner.base.errors import RunnerError
-from runner.study.grid import alone, fill, names_in
+from runner.papers.study.grid import alone, fill, names_in
 
 
 @pytest.mark.parametrize(

@@ -6,7 +6,7 @@ import json
 import pytest
 
 from runner.base.errors import RunnerError
-from runner.study.changes import FILE, Change, changes, read_conclusions
+from runner.papers.study.changes import FILE, Change, changes, read_conclusions
 
 OLD = {
     "thesis": {

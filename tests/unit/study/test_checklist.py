@@ -4,8 +4,8 @@ import pytest
 from pydantic import ValidationError
 
 from runner.base.paths import studies_with
+from runner.papers.study.report import Checklist, load_checklist
 from runner.reporting.document import Curves, Origin, Section
-from runner.study.report import Checklist, load_checklist
 
 CONTENT = {
     "title": "Checklist",

@@ -2,8 +2,8 @@
 
 from support.made_up_runs import made_up_run
 
+from runner.papers.study.report import citing_section
 from runner.reporting.document import Code
-from runner.study.report import citing_section
 
 
 def codes(section):

@@ -6,11 +6,11 @@ import numpy as np
 import pytest
 from support.made_up_runs import made_up_metric, made_up_run
 
+from runner.papers.reporting.published_claims import CONTRADICTION, PublishedClaim, PublishedStatement
+from runner.papers.study.claims import judged_claims, judged_statements, legend
+from runner.papers.study.results import MissingError
 from runner.reporting.document import Verdicts
-from runner.reporting.published_claims import CONTRADICTION, PublishedClaim, PublishedStatement
 from runner.reporting.words import PRESET
-from runner.study.claims import judged_claims, judged_statements, legend
-from runner.study.results import MissingError
 
 NUMBER = {
     "number": 1,

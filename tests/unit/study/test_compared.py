@@ -6,9 +6,9 @@ import numpy as np
 import pyarrow
 import pytest
 
-from runner.reporting.published_claims import load_claims
+from runner.papers.reporting.published_claims import load_claims
+from runner.papers.study.prose.compared import compare
 from runner.store import Run
-from runner.study.prose.compared import compare
 
 PRESETS = {"as_reported": "fitted", "full_equations": "printed"}
 CLAIMS = load_claims("thesis")

@@ -2,9 +2,9 @@
 
 import pytest
 
-from runner.study.check import never_failing, typed_numbers
-from runner.study.measured import Measured
-from runner.study.prose import ProseError, read_chapter
+from runner.papers.study.check import never_failing, typed_numbers
+from runner.papers.study.measured import Measured
+from runner.papers.study.prose import ProseError, read_chapter
 
 NAMES = {
     "number": lambda value: Measured("number", value, "m"),

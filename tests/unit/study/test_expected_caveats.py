@@ -8,16 +8,16 @@ from support.made_up_runs import made_up_metric, made_up_run
 
 from runner.base.errors import RunnerError
 from runner.config.judgement import THRESHOLDS
-from runner.reporting.document import Notice, Table
-from runner.study.expected_caveats import (
+from runner.papers.study.expected_caveats import (
     ExpectedCaveat,
     caveats_as_data,
     caveats_section,
     unexpected_caveats,
 )
-from runner.study.results import Results
-from runner.study.run_values import measured
-from runner.study.study import load_study
+from runner.papers.study.results import Results
+from runner.papers.study.run_values import measured
+from runner.papers.study.study import load_study
+from runner.reporting.document import Notice, Table
 
 
 def run_with(*rules):

@@ -3,8 +3,8 @@
 import numpy as np
 import pytest
 
+from runner.papers.study.measured import Measured, finding, findings
 from runner.reporting.document import Document, Section, Text
-from runner.study.measured import Measured, finding, findings
 
 SLOW, FAST = Measured("error of the slow one", 4e-3, "m"), Measured("error of the fast one", 1e-3, "m")
 

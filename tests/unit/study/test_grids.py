@@ -3,7 +3,7 @@
 import pytest
 
 from runner.base.errors import RunnerError
-from runner.study.grids import Grids
+from runner.papers.study.grids import Grids
 
 
 @pytest.fixture

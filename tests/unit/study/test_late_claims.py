@@ -6,7 +6,7 @@ import pytest
 import yaml
 
 from runner.base.errors import StoreError
-from runner.study.claims import late_claims
+from runner.papers.study.claims import late_claims
 
 CLAIM = {
     "number": 1, "statement": "The tip settles", "place": "section 2", "printed": [0.9], "unit": "s", "run": "goal",

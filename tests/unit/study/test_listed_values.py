@@ -5,13 +5,13 @@ import pytest
 from support.made_up_runs import made_up_run, planned
 
 from runner.base.errors import RunnerError
-from runner.study import check as trying
-from runner.study.measured import Measured
-from runner.study.prose import read_chapter
-from runner.study.prose.blocks import config, count, each
-from runner.study.prose.plots import over, panel
-from runner.study.prose.signals import moved, part, scaled, setting
-from runner.study.prose.tables import listing
+from runner.papers.study import check as trying
+from runner.papers.study.measured import Measured
+from runner.papers.study.prose import read_chapter
+from runner.papers.study.prose.blocks import config, count, each
+from runner.papers.study.prose.plots import over, panel
+from runner.papers.study.prose.signals import moved, part, scaled, setting
+from runner.papers.study.prose.tables import listing
 
 
 def pressed(stiffness, failed=False):

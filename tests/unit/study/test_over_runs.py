@@ -5,9 +5,9 @@ import pytest
 from support.made_up_runs import made_up_metric, made_up_run, planned
 
 from runner.base.errors import RunnerError
-from runner.study.measured import Measured
-from runner.study.prose import blocks, plots, signals, tables
-from runner.study.results import MissingError, found
+from runner.papers.study.measured import Measured
+from runner.papers.study.prose import blocks, plots, signals, tables
+from runner.papers.study.results import MissingError, found
 
 
 def run_of(value, failed=False, ends=None, unit="m"):

@@ -2,10 +2,10 @@
 
 import pytest
 
+from runner.papers.study.measured import Measured
+from runner.papers.study.prose import ProseError, read_chapter
 from runner.reporting.document import Items, Section, Table, Text
 from runner.reporting.markup import link_text, mark_text
-from runner.study.measured import Measured
-from runner.study.prose import ProseError, read_chapter
 
 TABLE = Table("Caption", ["a"], [["1"]])
 NAMES = {

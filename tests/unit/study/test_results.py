@@ -4,13 +4,13 @@ import pytest
 from support.made_up_runs import made_up_metric, made_up_run, planned
 
 from runner.base.errors import RunnerError
-from runner.study.check import never_failing
-from runner.study.measured import Measured
-from runner.study.prose import read_chapter
-from runner.study.prose.blocks import each, named
-from runner.study.prose.plots import line
-from runner.study.prose.tables import listing
-from runner.study.results import LeftOutError, Results, found
+from runner.papers.study.check import never_failing
+from runner.papers.study.measured import Measured
+from runner.papers.study.prose import read_chapter
+from runner.papers.study.prose.blocks import each, named
+from runner.papers.study.prose.plots import line
+from runner.papers.study.prose.tables import listing
+from runner.papers.study.results import LeftOutError, Results, found
 
 PATHS = ["line/a/1", "line/a/2", "line/b/1", "line/c/1", "circle/a/1"]
 RUNS = planned("{path}/{plant.case}/{number}", dict.fromkeys(PATHS))

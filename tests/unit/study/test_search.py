@@ -5,8 +5,8 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 
-from runner.study.tune import ROUNDS, _Search
-from runner.study.tunings import Tuning, key_of
+from runner.papers.study.tune import ROUNDS, _Search
+from runner.papers.study.tunings import Tuning, key_of
 
 ERROR = "rms_tracking_error"
 

@@ -3,9 +3,9 @@
 import pytest
 
 from runner.base.errors import RunnerError
+from runner.papers.study.chapters import parts
+from runner.papers.study.results import MissingError, Results
 from runner.reporting.document import Section, Text
-from runner.study.chapters import parts
-from runner.study.results import MissingError, Results
 
 RUNS = Results({"a": 1, "b": 2}, {"c": "cut short: killed for $5"})
 

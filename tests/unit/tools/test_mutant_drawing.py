@@ -77,7 +77,7 @@ def test_the_table_counts_by_package_and_shows_what_was_not_found():
         for path, status in [
             ("runner/plants/rk4.py", "killed"),
             ("runner/plants/rk4.py", "timeout"),
-            ("runner/studies/thesis/a.py", "survived"),
+            ("runner/papers/studies/thesis/a.py", "survived"),
             ("runner/cli/main.py", "not covered"),
         ]
     ]
@@ -86,10 +86,10 @@ def test_the_table_counts_by_package_and_shows_what_was_not_found():
     assert counts == {
         "runner/cli": ["0", "0", "0", "1"],
         "runner/plants": ["1", "1", "0", "0"],
-        "runner/studies": ["0", "0", "1", "0"],
+        "runner/papers/studies": ["0", "0", "1", "0"],
         "all": ["1", "1", "1", "1"],
     }
     assert lines[5:] == [
-        "survived: runner/studies/thesis/a.py:7 f", "  - a < b", "  + a <= b",
+        "survived: runner/papers/studies/thesis/a.py:7 f", "  - a < b", "  + a <= b",
         "not covered: runner/cli/main.py:7 f", "  - a < b", "  + a <= b",
     ]  # fmt: skip

@@ -6,8 +6,8 @@ from typing import get_args
 
 import pytest
 
-from runner.reporting.equation import EquationVerdict
-from runner.reporting.published_claims import Verdict, load_claims, load_statements
+from runner.papers.reporting.equation import EquationVerdict
+from runner.papers.reporting.published_claims import Verdict, load_claims, load_statements
 from tools.docs import study_tables
 from tools.docs.study_tables import PAGE, STORED, made_from
 

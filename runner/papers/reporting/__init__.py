@@ -1,0 +1,1 @@
+"""What reports on published sources add: verdicts on claims and equations, and the audit."""

@@ -1,0 +1,149 @@
+"""Expressions in a chapter, `{{ ... }}`, with their values kept separate from the Markdown.
+
+A placeholder replaces each value before Markdown is parsed. A value can therefore never become markup, a block or
+another expression.
+"""
+
+import ast
+import re
+from collections import ChainMap
+from collections.abc import Mapping
+from dataclasses import replace
+from typing import Any, get_args
+
+import numpy as np
+
+from runner.base.errors import RunnerError
+from runner.papers.expressions.evaluator import Budget, Scope
+from runner.papers.expressions.grammar import ExpressionError, parse
+from runner.papers.expressions.insertions import insertions
+from runner.papers.study.measured import Condition, Measured
+from runner.papers.study.prose.signals import Quantity
+from runner.papers.study.prose.tables import Column
+from runner.papers.study.results import MissingError
+from runner.reporting.document import Block, Claim, Panel, Section, Series
+from runner.reporting.table import Number
+
+OPEN, CLOSE = "\uf000", "\uf001"
+"""Characters around the number of a value that is stored separately."""
+PLACEHOLDER = re.compile(f"{OPEN}(\\d+){CLOSE}")
+
+PRIVATE = re.compile("[\ue000-\uf8ff]")
+_STATEMENT = re.compile(r"\{%|%\}|\{#")
+_SET = re.compile(r"^\{% set (\w+) = (.*?) %\}$", re.MULTILINE | re.DOTALL)
+_BRANCHES = (ast.IfExp, ast.BoolOp, ast.Not)
+_MEMBERS = {Measured: ("value", "shown", "near", "with_other"), Condition: ("holds",), Quantity: ()}
+_HANDED = (*get_args(Block), Section, Column, Number, Panel, Series, Claim, np.ndarray)
+
+
+class Values:
+    """The values of a chapter's expressions, each with its line.
+
+    Args:
+        file: Name of the chapter's file.
+        names: What expressions may call and read, by name.
+        handed: Further classes whose values they hand on as they are.
+    """
+
+    def __init__(self, file: str, names: Mapping[str, Any], handed: tuple[type, ...] = ()) -> None:
+        functions = {name: value for name, value in names.items() if callable(value)}
+        self.named: dict[str, Any] = {}
+        """The values that the chapter itself gives a name, by that."""
+        given = {name: value for name, value in names.items() if name not in functions}
+        self._scope = Scope(functions, ChainMap(self.named, given), _MEMBERS, (*_HANDED, *handed))
+        self._file, self._budget = file, Budget()
+        self.found: list[tuple[Any, int]] = []
+        self._lines = [1]
+
+    def put_away(self, text: str) -> str:
+        """Return a chapter with a placeholder for each of its expressions; `line_of` returns their lines.
+
+        Raises:
+            ProseError: if one cannot be evaluated, or there is a branch, a loop or a private character.
+        """
+        for number, content in enumerate(text.splitlines(), start=1):
+            if PRIVATE.search(content):
+                raise ProseError(self._file, number, "has a character for private use; leave it out")
+        text = self._without_names(text)
+        parts: list[str] = []
+        end, line = 0, 1
+        try:
+            for start, stop in insertions(text):
+                line = self._keep(text[end:start], line, parts)
+                parts.append(self.put(self.value(text[start + 2 : stop - 2], line), line))
+                line += text.count("\n", start, stop)
+                end = stop
+        except ExpressionError as error:
+            raise ProseError(self._file, text.count("\n", 0, error.position) + 1, error.reason) from None
+        self._keep(text[end:], line, parts)
+        rest = "".join(parts)
+        if found := _STATEMENT.search(rest):
+            line = self.line_of(rest.count("\n", 0, found.start()) + 1)
+            raise ProseError(self._file, line, f"{found[0]} is not used here: a chapter has one branch and no loops")
+        return rest
+
+    def _without_names(self, text: str) -> str:
+        """Give names to the values of `{% set name = EXPRESSION %}`; return the text with these left empty."""
+        for found in _SET.finditer(text):
+            line = text.count("\n", 0, found.start()) + 1
+            if found[1] in self.named:
+                raise ProseError(self._file, line, f"set {found[1]}: the name is taken above; choose another")
+            self.named[found[1]] = self.value(found[2], line)
+        return _SET.sub(lambda found: "\n" * found[0].count("\n"), text)
+
+    def line_of(self, number: int) -> int:
+        """Return the line of the file that became a line of the text without expressions; both count from 1."""
+        return self._lines[min(number, len(self._lines)) - 1]
+
+    def _keep(self, piece: str, line: int, parts: list[str]) -> int:
+        """Add a piece without expressions that begins on a line; return the line on which it ends."""
+        parts.append(piece)
+        for _ in range(piece.count("\n")):
+            line += 1
+            self._lines.append(line)
+        return line
+
+    def put(self, value: Any, line: int) -> str:
+        """Keep a value and return its placeholder."""
+        self.found.append((value, line))
+        return f"{OPEN}{len(self.found) - 1}{CLOSE}"
+
+    def value(self, expression: str, line: int, instead: Mapping[str, Any] | None = None) -> Any:
+        """Return the value of an expression.
+
+        Operations count towards the limit of the file, those with replaced values for each expression anew.
+
+        Args:
+            expression: The expression.
+            line: Its line, counted from 1.
+            instead: Values that replace those of some names.
+
+        Raises:
+            ProseError: if it has none; names the place.
+        """
+        source = " ".join(expression.split())
+        scope = replace(self._scope, values={**self._scope.values, **instead}) if instead else self._scope
+        try:
+            if any(isinstance(node, _BRANCHES) for node in ast.walk(parse(source))):
+                told = "chooses between words; a chapter has one branch: state a condition in a finding"
+                raise ProseError(self._file, line, f"{source}: {told}")
+            return scope.evaluate(source, Budget() if instead else self._budget)
+        except (ProseError, MissingError):  # what a run that was not made is needed for is left out of the report
+            raise
+        except RunnerError as error:
+            told = error.reason if isinstance(error, ExpressionError) else str(error)
+            raise ProseError(self._file, line, f"{source}: {told}") from error
+
+
+class ProseError(RunnerError):
+    """A chapter that cannot be read.
+
+    Args:
+        file: Its name.
+        line: The line, counted from 1.
+        text: What is wrong, and what to write in its place.
+    """
+
+    def __init__(self, file: str, line: int, text: str) -> None:
+        super().__init__(f"{file}:{line}: {text}")
+        self.line = line

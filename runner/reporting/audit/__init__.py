@@ -1,1 +1,0 @@
-"""Report on the audited equations of the studies."""
