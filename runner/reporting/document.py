@@ -6,7 +6,7 @@ become markup. A literal dollar sign is written twice. `§2.1` is a link to that
 "table 2.1" are links if the report contains them.
 """
 
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
 from typing import ClassVar, Literal
 
@@ -14,11 +14,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from runner.base.arrays import FloatArray as FloatArray
-from runner.papers.reporting.equation import Equation as Equation
-from runner.papers.reporting.equation import EquationForm as EquationForm
-from runner.papers.reporting.equation import EquationVerdict
-from runner.papers.reporting.published_claims import Verdict
 from runner.reporting.answer_map import AnswerMap
+from runner.reporting.block import Block as Block
 from runner.reporting.charts.figure import Curves as Curves
 from runner.reporting.charts.figure import Map as Map
 from runner.reporting.charts.figure import Maps as Maps
@@ -29,23 +26,31 @@ from runner.reporting.table import Table as Table
 
 
 @dataclass(frozen=True)
-class Text:
+class Text(Block):
     """A paragraph; inline mathematics is between dollar signs."""
 
     block: ClassVar[str] = "text"
     text: str
 
+    def texts(self) -> Iterator[str]:
+        """Yield the text."""
+        yield self.text
+
 
 @dataclass(frozen=True)
-class Items:
+class Items(Block):
     """A list of short strings; inline mathematics as in Text."""
 
     block: ClassVar[str] = "items"
     items: Sequence[str]
 
+    def texts(self) -> Iterator[str]:
+        """Yield the items."""
+        yield from self.items
+
 
 @dataclass(frozen=True)
-class Code:
+class Code(Block):
     """A string that is shown as typed, and can be copied.
 
     Attributes:
@@ -62,7 +67,7 @@ NoticeKind = Literal["finding", "warning", "failure", "stands", "falls", "turns"
 
 
 @dataclass(frozen=True)
-class Notice:
+class Notice(Block):
     """A paragraph set apart: a failed run, a limit of the comparison, a finding that contradicts the source.
 
     Attributes:
@@ -78,9 +83,13 @@ class Notice:
     text: str
     answer: bool = False
 
+    def texts(self) -> Iterator[str]:
+        """Yield the text."""
+        yield self.text
+
 
 @dataclass(frozen=True)
-class Formula:
+class Formula(Block):
     """A displayed equation.
 
     Attributes:
@@ -92,9 +101,13 @@ class Formula:
     typst: str
     number: str = ""
 
+    def displayed(self) -> Iterator[str]:
+        """Yield the equation."""
+        yield self.typst
+
 
 @dataclass(frozen=True)
-class RunList:
+class RunList(Block):
     """The runs of a sweep: filtered, sorted and plotted against each other in HTML, a short table in the PDF.
 
     Attributes:
@@ -110,6 +123,7 @@ class RunList:
     """
 
     block: ClassVar[str] = "runlist"
+    word: ClassVar[str] = "figure"
     caption: str
     axes: Sequence[tuple[str, Sequence[str]]]
     levels: NDArray[np.intp]
@@ -121,9 +135,13 @@ class RunList:
     folders: Sequence[str]
     origin: Origin = field(default_factory=Origin)
 
+    def texts(self) -> Iterator[str]:
+        """Yield the caption."""
+        yield self.caption
+
 
 @dataclass(frozen=True)
-class Picture:
+class Picture(Block):
     """A still image, drawn from the model or from a stored run.
 
     Attributes:
@@ -135,101 +153,17 @@ class Picture:
     """
 
     block: ClassVar[str] = "picture"
+    word: ClassVar[str] = "figure"
+    actions: ClassVar[tuple[str, ...]] = ("enlarge", "svg")
     caption: str
     svg: str
     alt: str
     width: float = 0.7
     origin: Origin = field(default_factory=Origin)
 
-
-@dataclass(frozen=True)
-class ClaimResult:
-    """Result of the runs for one claim under one preset.
-
-    Attributes:
-        preset: Name of the preset; empty where there is one way to take the claim.
-        measured: Median and spread over the seeds, formatted with unit, such as "1.41 s (1.12 to 1.77)".
-        verdict: How it compares with what the source says.
-        words: What the preset is called.
-        hangs: What the verdict hangs on, such as the engine, and what it would be otherwise; empty for nothing.
-    """
-
-    preset: str
-    measured: str
-    verdict: Verdict | EquationVerdict
-    words: str = ""
-    hangs: Mapping[str, str] = field(default_factory=dict)
-
-
-@dataclass(frozen=True)
-class Claim:
-    """A published number and the simulated one, with a verdict for each preset.
-
-    Attributes:
-        number: Its number in our list of claims.
-        statement: What the source says.
-        place: Where it says so, such as "section 3.3.1, page 38".
-        printed: The printed value, formatted with unit; empty for a statement without a number.
-        findings: One for each preset.
-        reason: Why the verdict is what it is; inline mathematics as in Text.
-        command: The command of its runs.
-    """
-
-    number: str
-    statement: str
-    place: str
-    printed: str
-    findings: Sequence[ClaimResult]
-    reason: str
-    command: str = ""
-
-
-@dataclass(frozen=True)
-class Verdicts:
-    """Claims of a source, each with its verdicts and their reason.
-
-    Attributes:
-        caption: What is listed; inline mathematics as in Text.
-        rows: The claims, in the order of the source; each with as many findings.
-        legend: What the words of the verdicts mean, in a few sentences; inline mathematics as in Text.
-        origin: Command and commit.
-    """
-
-    block: ClassVar[str] = "verdicts"
-    caption: str
-    rows: Sequence[Claim]
-    legend: str = ""
-    origin: Origin = field(default_factory=Origin)
-
-    @property
-    def ways(self) -> list[str]:
-        """Names of the ways in which each claim was simulated."""
-        return [found.words or "simulated" for found in self.rows[0].findings] if self.rows else []
-
-    @property
-    def has_printed(self) -> bool:
-        """True if the source prints a value for a claim."""
-        return any(claim.printed for claim in self.rows)
-
-
-@dataclass(frozen=True)
-class Equations:
-    """Audited equations, those that are wrong first; the HTML page can be searched, and folds those that are right.
-
-    Attributes:
-        caption: What it lists; inline mathematics as in Text.
-        rows: The equations, in the order of the text.
-        origin: Its number in the source, command and commit.
-        source: What the source of the equations is called.
-        data: Address of a file next to the report that has all of them, or "".
-    """
-
-    block: ClassVar[str] = "equations"
-    caption: str
-    rows: Sequence[Equation]
-    origin: Origin = field(default_factory=Origin)
-    source: str = ""
-    data: str = ""
+    def texts(self) -> Iterator[str]:
+        """Yield the caption."""
+        yield self.caption
 
 
 @dataclass(frozen=True)
@@ -254,7 +188,7 @@ class Body:
 
 
 @dataclass(frozen=True)
-class Playback:
+class Playback(Block):
     """The motion of an arm, and of further ones: played, paused and turned in HTML, a still picture in the PDF.
 
     Attributes:
@@ -276,6 +210,8 @@ class Playback:
     """
 
     block: ClassVar[str] = "playback"
+    word: ClassVar[str] = "figure"
+    actions: ClassVar[tuple[str, ...]] = ("enlarge", "svg", "csv")
     caption: str
     times: FloatArray
     bodies: Sequence[Body]
@@ -292,31 +228,17 @@ class Playback:
     look: int | None = None
     draw: Callable[[float], str] | None = field(default=None, repr=False, compare=False)
 
+    def texts(self) -> Iterator[str]:
+        """Yield the caption."""
+        yield self.caption
+
 
 @dataclass(frozen=True)
-class Provenance:
+class Provenance(Block):
     """Provenance of the results: names and values, such as plant, step, versions, machine, commit."""
 
     block: ClassVar[str] = "provenance"
     rows: Sequence[tuple[str, str]]
-
-
-Block = (
-    Text
-    | Items
-    | Code
-    | Notice
-    | Formula
-    | Curves
-    | Maps
-    | RunList
-    | Picture
-    | Table
-    | Verdicts
-    | Equations
-    | Playback
-    | Provenance
-)
 
 
 @dataclass(frozen=True)

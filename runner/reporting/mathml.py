@@ -67,10 +67,10 @@ def _compile(texts: list[str], displayed: bool) -> dict[str, Code | None]:
 
 
 def _exported(texts: list[str], displayed: bool) -> list[Code]:
-    source = typst_environment().get_template("formulas.typ.j2").render(texts=texts, displayed=displayed)
+    source = typst_environment().get_template("mathml.typ.j2").render(texts=texts, displayed=displayed)
     # The folder holds nothing else: whatever a formula tries to read does not exist.
     with tempfile.TemporaryDirectory() as folder:
-        path = Path(folder, "formulas.typ")
+        path = Path(folder, "mathml.typ")
         path.write_text(source, encoding="utf-8")
         page = typst.compile(path, root=path.parent, format="html", ignore_system_fonts=True).decode()
     return [Code("".join(_tidied(ET.fromstring(each)))) for each in _FORMULA.findall(page)]  # noqa: S314 - by Typst

@@ -4,26 +4,9 @@ import re
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 
-from runner.papers.reporting.equation import name_text
-from runner.reporting.document import (
-    Block,
-    Curves,
-    Document,
-    Equations,
-    Formula,
-    Items,
-    Maps,
-    Notice,
-    Origin,
-    Picture,
-    Playback,
-    RunList,
-    Section,
-    Table,
-    Text,
-    Verdicts,
-)
+from runner.reporting.document import Block, Curves, Document, Maps, Origin, Playback, Section, Table
 from runner.reporting.markup import anchor, spans
+from runner.reporting.verdicts import Tally
 
 _NUMBERED = re.compile(r"(?:(figure|fig\.?|table) )?(\d+(?:\.\d+)*[a-z]?)", re.IGNORECASE)
 _EXPERIMENT = re.compile(r"experiment=(\S+)")
@@ -75,12 +58,9 @@ def formulas(document: Document) -> tuple[list[str], list[str]]:
         formula for text in (document.abstract, *document.notes) for formula in _math(text)
     )
     for block in blocks(document):
-        if isinstance(block, Formula):
-            displayed[block.typst] = None
-        if isinstance(block, Equations):
-            every = (form for row in block.rows for form in row.forms)
-            inline.update(dict.fromkeys(formula for form in every for line in form.lines for formula in line))
-        for text in _texts(block):
+        displayed.update(dict.fromkeys(block.displayed()))
+        inline.update(dict.fromkeys(block.inline()))
+        for text in block.texts():
             inline.update(dict.fromkeys(_math(text)))
     return list(displayed), list(inline)
 
@@ -89,31 +69,9 @@ def _math(text: str) -> list[str]:
     return [span.text for span in spans(text) if span.math]
 
 
-def _texts(block: Block) -> Iterator[str]:
-    """Yield the strings of a block that may carry inline mathematics."""
-    match block:
-        case Text() | Notice():
-            yield block.text
-        case Items():
-            yield from block.items
-        case Curves():
-            yield from (block.finding, block.caption)
-        case Maps() | RunList() | Picture() | Playback():
-            yield block.caption
-        case Table():
-            yield block.caption
-            for line in block.lines:
-                yield from line
-        case Verdicts():
-            yield block.caption
-            yield from (claim.reason for claim in block.rows)
-        case Equations():
-            yield block.caption
-            for equation in block.rows:
-                yield from (name_text(equation.number), equation.finding)
-                yield from (form.note for form in equation.forms)
-        case _:
-            pass
+def tallies(document: Document) -> list[Tally]:
+    """Return the counts of verdicts of a report, in reading order."""
+    return [tally for block in blocks(document) for tally in block.tallies()]
 
 
 def count_figures(document: Document) -> int:
@@ -146,14 +104,10 @@ class Places:
         self._evidence = tables | self._evidence  # a table is evidence where no figure is
 
     def _place(self, chapter: Chapter, block: Block, origin: Origin, count: int) -> None:
-        if isinstance(block, Verdicts):
-            self.names |= {claim_place(row.number) for row in block.rows}
-        if isinstance(block, Equations):
-            self.names |= {verdict_place(block.source, row.verdict) for row in block.rows}
-        kind = "table" if block.block in ("table", "equations", "verdicts") else "figure"
-        name = numbered_place(origin.number, kind)
+        self.names |= {*block.places()}
+        name = numbered_place(origin.number, block.word)
         if not name or name in self.names:
-            name = f"{chapter.anchor}-{kind}-{count}"
+            name = f"{chapter.anchor}-{block.word}-{count}"
         self.names.add(name)
         self._of[id(block)] = name
         if isinstance(block, Curves | Maps | Playback):
@@ -186,13 +140,3 @@ def numbered_place(number: str, kind: str) -> str:
         return ""
     word = (found[1] or kind).lower()
     return f"{'table' if word == 'table' else 'figure'}-{found[2].replace('.', '-')}"
-
-
-def claim_place(number: str) -> str:
-    """Return the name of the place of a claim."""
-    return f"claim-{number}"
-
-
-def verdict_place(source: str, verdict: str) -> str:
-    """Return the name of the place of the equations of a source that have a verdict."""
-    return re.sub(r"\W+", "-", f"{source} {verdict}").strip("-")

@@ -32,7 +32,6 @@ from runner.reporting.outline import Places
 from runner.reporting.playback import playback_spec
 from runner.reporting.table import Table, numbers
 from runner.reporting.templating import Code, html_environment, typst_environment
-from runner.reporting.verdicts import tallies
 from runner.store.atomic import write_atomically
 
 SHOWN = 6
@@ -73,7 +72,7 @@ def write_report(document: Document, folder: Path, formats: Collection[str] = ("
 
 def _content(document: Document) -> dict[str, Any]:
     """Return the values that both templates show of a document."""
-    shown = {"chapters": outline.chapters(document), "places": Places(document), "tallies": tallies(document)}
+    shown = {"chapters": outline.chapters(document), "places": Places(document), "tallies": outline.tallies(document)}
     return {"document": document, **shown}
 
 

@@ -1,7 +1,7 @@
 """Tables of typed cells, with their text in reports and on a terminal."""
 
 import math
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass, field
 from functools import cached_property
 from typing import ClassVar, Literal
@@ -16,6 +16,7 @@ from runner.base.quantities import (
     smaller_units,
 )
 from runner.base.sanitize import one_line
+from runner.reporting.block import Block
 from runner.reporting.markup import literal
 
 PLAIN = 1e-4
@@ -86,7 +87,7 @@ def numbers(*titles: str) -> list[str | Column]:
 
 
 @dataclass(frozen=True)
-class Table:
+class Table(Block):
     """A table.
 
     Attributes:
@@ -99,6 +100,8 @@ class Table:
     """
 
     block: ClassVar[str] = "table"
+    word: ClassVar[str] = "table"
+    actions: ClassVar[tuple[str, ...]] = ("csv",)
     caption: str
     header: Sequence[str | Column]
     rows: Sequence[Sequence[Cell]]
@@ -117,6 +120,12 @@ class Table:
         columns = [_column_texts(each, [row[place] for row in self.rows]) for place, each in enumerate(self.columns)]
         lines = [[column[place] for column in columns] for place in range(1 + len(self.rows))]
         return lines if self.prose else [[literal(text) for text in line] for line in lines]
+
+    def texts(self) -> Iterator[str]:
+        """Yield the caption and the cells."""
+        yield self.caption
+        for line in self.lines:
+            yield from line
 
 
 def _column_texts(column: Column, cells: Sequence[Cell]) -> list[str]:

@@ -10,10 +10,8 @@ import jinja2
 
 from runner.base.paths import templates_dir
 from runner.base.sanitize import plain
-from runner.papers.reporting.equation import FOLDED, SHOWN, by_finding, by_place, name_text
 from runner.reporting.document import Origin
 from runner.reporting.markup import spans
-from runner.reporting.outline import verdict_place
 from runner.reporting.verdicts import WORDS
 
 _BEFORE_UNIT = re.compile(
@@ -135,10 +133,6 @@ def _environment(bound: Callable[[str], Code], **options: Any) -> jinja2.Environ
         "aspect": aspect,
         "bind_units": bound,
         "name_parts": name_parts,
-        "name_text": name_text,
-        "by_finding": by_finding,
-        "by_place": by_place,
-        "verdict_place": verdict_place,
     }
-    environment.globals |= {"verdict_words": WORDS, "shown_verdicts": SHOWN, "folded_verdicts": FOLDED}
+    environment.globals["verdict_words"] = WORDS
     return environment

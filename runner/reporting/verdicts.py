@@ -1,14 +1,9 @@
-"""Verdicts and kinds of notices in reports: their words, signs and colours, and the counts of the first screen."""
+"""Verdicts and kinds of notices in reports: their words, signs and colours, and counts of them."""
 
 from collections import Counter
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterable
 from dataclasses import dataclass
 from typing import NamedTuple
-
-from runner.papers.reporting.equation import FOLDED, SHOWN
-from runner.papers.reporting.published_claims import CONTRADICTION
-from runner.reporting.document import Block, ClaimResult, Document, Equations, Verdicts
-from runner.reporting.outline import blocks, claim_place, verdict_place
 
 
 class Word(NamedTuple):
@@ -19,12 +14,14 @@ class Word(NamedTuple):
         color: Name of its colours in the styles: good, better, warn, bad or none.
         plural: The word after a number above 1; empty if it is the same.
         meaning: The meaning of a verdict on an equation.
+        is_sentence: True if a colon parts it from a number.
     """
 
     sign: str
     color: str
     plural: str = ""
     meaning: str = ""
+    is_sentence: bool = False
 
 
 WORDS = {
@@ -32,7 +29,7 @@ WORDS = {
     "differs": Word("≠", "bad", "differ"),
     "smaller than printed": Word("<", "better"),
     "larger than printed": Word(">", "bad"),
-    "source contradicts itself": Word("!", "warn"),
+    "source contradicts itself": Word("!", "warn", is_sentence=True),
     "undecided": Word("?", "none"),
     "correct": Word("✓", "good", meaning="equal to both derivations, except for rounding, everywhere tried"),
     "correct after emendation": Word("✓", "better", meaning="so once damage of the text is emended"),
@@ -89,46 +86,11 @@ class Tally:
         told: list[str] = []
         total = sum(count for _, count in self.counts)
         for verdict, count in self.counts:
-            number = f"{count}{'' if told else f' of {total}'}{':' * (verdict == CONTRADICTION)}"
+            number = f"{count}{'' if told else f' of {total}'}{':' * WORDS[verdict].is_sentence}"
             told.append(f"{number} {(count > 1 and WORDS[verdict].plural) or verdict}")
         return ", ".join(told)
 
-
-def tallies(document: Document) -> list[Tally]:
-    """Return the verdicts of a report: on its claims, for each way of simulating them, and on its equations."""
-    found = []
-    for block in blocks(document):
-        if isinstance(block, Verdicts):
-            for number, way in enumerate(block.ways):
-                squares = tuple(_square(row.number, row.findings[number]) for row in block.rows)
-                found.append(Tally(way, squares, _counted(square.verdict for square in squares)))
-        if isinstance(block, Equations):
-            counts = _counted(row.verdict for row in block.rows)
-            squares = tuple(
-                Square(str(count), verdict, verdict_place(block.source, verdict), f"{count} {verdict}")
-                for verdict in (*SHOWN, *FOLDED)
-                if (count := dict(counts).get(verdict, 0))
-            )
-            found.append(Tally(block.source or "equations", squares, counts))
-    return found
-
-
-def _square(claim: str, found: ClaimResult) -> Square:
-    hangs = f"; depends on {', '.join(found.hangs)}" if found.hangs else ""
-    words = f"Claim {claim}: {found.verdict}{hangs}"
-    return Square(claim + "*" * bool(found.hangs), found.verdict, claim_place(claim), words)
-
-
-def find_conditional_claims(document_blocks: Iterable[Block]) -> str:
-    """Return the claims whose verdict depends on more than they say, and the reasons; empty without one."""
-    found: dict[str, list[str]] = {}
-    for block in document_blocks:
-        for row in block.rows if isinstance(block, Verdicts) else ():
-            for what in dict.fromkeys(what for result in row.findings for what in result.hangs):
-                found.setdefault(what, []).append(row.number)
-    told = "; ".join(f"on {what}: claim {', '.join(claims)}" for what, claims in found.items())
-    return f"* Verdicts that depend {told}." if told else ""
-
-
-def _counted(verdicts: Iterator[str]) -> tuple[tuple[str, int], ...]:
-    return tuple(Counter(verdicts).most_common())
+    @classmethod
+    def of(cls, way: str, squares: Iterable[Square], verdicts: Iterable[str]) -> "Tally":
+        """Return the tally of some verdicts, the most frequent first."""
+        return cls(way, tuple(squares), tuple(Counter(verdicts).most_common()))

@@ -2,16 +2,13 @@
 
 import numpy as np
 
+from runner.papers.reporting.claims import Claim, ClaimResult, Verdicts
+from runner.papers.reporting.equation import Equation, EquationForm, Equations
 from runner.reporting.document import (
     Body,
-    Claim,
-    ClaimResult,
     Code,
     Curves,
     Document,
-    Equation,
-    EquationForm,
-    Equations,
     Formula,
     Items,
     Map,
@@ -27,7 +24,6 @@ from runner.reporting.document import (
     Series,
     Table,
     Text,
-    Verdicts,
 )
 from runner.reporting.markup import link_text, mark_text
 from runner.reporting.table import Column, numbers

@@ -28,9 +28,10 @@ folder. `symbols: xarm7.symbols` names a function of that module that draws the 
 
 `elements` gives the right side of each equation by its left side, in the syntax of
 `runner/papers/expressions/parser.py`; the report shows the same strings. Names can be vectors and matrices of the
-sample, as in `Lambda: transpose(inverse(J)) @ M @ inverse(J)`. They can also be left sides of other equations of the file,
-which then stand for their right form. A left side can be an expression, as in `tau - G: M @ ddq + V`; its names have
-their true values. `letters` sets names as the source does, and `indices` gives the numbers of a letter in brackets:
+sample, as in `Lambda: transpose(inverse(J)) @ M @ inverse(J)`. They can also be left sides of other equations of the
+file, which then stand for their right form. A left side can be an expression, as in `tau - G: M @ ddq + V`; its names
+have their true values. `letters` sets names as the source does, and `indices` gives the numbers of a letter in
+brackets:
 
     printed: {elements: {"Z[i]": "R[i] @ z"}}
     indices: {i: [1, 2, 3]}

@@ -14,12 +14,11 @@ from runner.papers.audit.entry import entries
 from runner.papers.audit.sources import Where
 from runner.papers.audit.verdict import SAMPLES, VERDICTS, CheckedEquation
 from runner.papers.reporting.audit_forms import RightElements, forms_of
+from runner.papers.reporting.equation import Equation, Equations
 from runner.reporting.document import (
     Block,
     Curves,
     Document,
-    Equation,
-    Equations,
     Items,
     Notice,
     Origin,

@@ -1,11 +1,14 @@
 """Printed equations in a report: forms, verdict, reading order and the scripts of their names."""
 
 import re
-from collections.abc import Iterable, Sequence
-from dataclasses import dataclass, replace
-from typing import Literal
+from collections.abc import Iterable, Iterator, Sequence
+from dataclasses import dataclass, field, replace
+from typing import ClassVar, Literal
 
+from runner.reporting.block import Block
 from runner.reporting.markup import literal
+from runner.reporting.table import Origin
+from runner.reporting.verdicts import Square, Tally
 
 EquationVerdict = Literal["correct", "correct after emendation", "wrong as printed", "unreadable", "definition"]
 
@@ -61,6 +64,75 @@ class Equation:
     error: str
     forms: Sequence[EquationForm]
     finding: str = ""
+
+    @property
+    def name(self) -> str:
+        """The number or name as inline text."""
+        return name_text(self.number)
+
+
+@dataclass(frozen=True)
+class Equations(Block):
+    """Audited equations, those that are wrong first; the HTML page can be searched, and folds those that are right.
+
+    Attributes:
+        caption: What it lists; inline mathematics as in Text.
+        rows: The equations, in the order of the text.
+        origin: Its number in the source, command and commit.
+        source: What the source of the equations is called.
+        data: Address of a file next to the report that has all of them, or "".
+    """
+
+    block: ClassVar[str] = "equations"
+    templates: ClassVar[str] = "papers"
+    word: ClassVar[str] = "table"
+    caption: str
+    rows: Sequence[Equation]
+    origin: Origin = field(default_factory=Origin)
+    source: str = ""
+    data: str = ""
+
+    @property
+    def shown(self) -> list[tuple[str, str, int, list[tuple[str, list[Equation]]]]]:
+        """Each verdict that needs a look, with its place, its number of equations, and these by finding."""
+        return [(verdict, place, len(rows), by_finding(rows)) for verdict, place, rows in self._with_verdicts(SHOWN)]
+
+    @property
+    def folded(self) -> list[tuple[str, str, int, list[tuple[str, list[Equation]]]]]:
+        """Each verdict that needs none, with its place, its number of equations, and these by place."""
+        return [(verdict, place, len(rows), by_place(rows)) for verdict, place, rows in self._with_verdicts(FOLDED)]
+
+    def _with_verdicts(self, verdicts: Iterable[str]) -> Iterator[tuple[str, str, list[Equation]]]:
+        for verdict in verdicts:
+            if rows := [row for row in self.rows if row.verdict == verdict]:
+                yield verdict, self._place(verdict), rows
+
+    def _place(self, verdict: str) -> str:
+        return re.sub(r"\W+", "-", f"{self.source} {verdict}").strip("-")
+
+    def texts(self) -> Iterator[str]:
+        """Yield the caption, and of each equation the name, the finding and the notes."""
+        yield self.caption
+        for row in self.rows:
+            yield from (row.name, row.finding, *(form.note for form in row.forms))
+
+    def inline(self) -> Iterator[str]:
+        """Yield the formulas."""
+        for row in self.rows:
+            for form in row.forms:
+                yield from (formula for line in form.lines for formula in line)
+
+    def places(self) -> Iterable[str]:
+        """Return the names of the places of the verdicts."""
+        return {self._place(row.verdict) for row in self.rows}
+
+    def tallies(self) -> Iterable[Tally]:
+        """Yield the count of each verdict."""
+        squares = [
+            Square(str(len(rows)), verdict, place, f"{len(rows)} {verdict}")
+            for verdict, place, rows in self._with_verdicts((*SHOWN, *FOLDED))
+        ]
+        yield Tally.of(self.source or "equations", squares, [row.verdict for row in self.rows])
 
 
 def by_finding(rows: Iterable[Equation]) -> list[tuple[str, list[Equation]]]:

@@ -15,7 +15,8 @@ from runner.papers.audit.entry import parts as parts_in
 from runner.papers.audit.sources import Source
 from runner.papers.audit.verdict import SAMPLES, Check
 from runner.papers.reporting.audit_report import rows
-from runner.papers.reporting.equation import EquationVerdict
+from runner.papers.reporting.claims import Claim, Verdicts
+from runner.papers.reporting.equation import Equations, EquationVerdict
 from runner.papers.reporting.published_claims import (
     CLAIMS,
     FACTOR,
@@ -33,7 +34,7 @@ from runner.papers.study.prose.compared import compare
 from runner.papers.study.prose.reader import Reading
 from runner.papers.study.results import LeftOutError, MissingError, Results, Runs
 from runner.papers.study.study import Study
-from runner.reporting.document import Claim, Equations, Notice, Origin, Section, Text, Verdicts
+from runner.reporting.document import Notice, Origin, Section, Text
 from runner.reporting.markup import literal
 from runner.reporting.outline import number_sections
 from runner.store import Calibration, Run

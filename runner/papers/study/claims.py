@@ -9,6 +9,7 @@ import numpy as np
 
 from runner.base.quantities import format_range, quantity
 from runner.metrics.positioning import STEADY_WINDOW
+from runner.papers.reporting.claims import Claim, ClaimResult
 from runner.papers.reporting.equation import EquationVerdict
 from runner.papers.reporting.published_claims import (
     CLAIMS,
@@ -25,7 +26,6 @@ from runner.papers.reporting.published_claims import (
 )
 from runner.papers.study.results import MissingError
 from runner.papers.study.study import Study
-from runner.reporting.document import Claim, ClaimResult
 from runner.reporting.words import PLANT
 from runner.statistics.spec import merge_histories, set_after, today
 from runner.store import Run

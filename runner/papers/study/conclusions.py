@@ -2,9 +2,11 @@
 
 from collections.abc import Mapping, Sequence
 
+from runner.papers.reporting.claims import Claim, Verdicts
+from runner.papers.reporting.equation import Equations
 from runner.papers.study.expected_caveats import ExpectedCaveat, caveats_as_data
 from runner.papers.study.measured import findings
-from runner.reporting.document import Claim, Document, Equations, Verdicts
+from runner.reporting.document import Document
 from runner.reporting.markup import without_marks
 from runner.reporting.outline import blocks
 from runner.store import Calibration, Run

@@ -12,6 +12,7 @@ from runner.base.paths import studies_dir
 from runner.papers.expressions.evaluator import Budget, Scope
 from runner.papers.expressions.grammar import ExpressionError
 from runner.papers.expressions.insertions import fill
+from runner.papers.reporting.claims import Verdicts, find_conditional_claims
 from runner.papers.study.chapters import Chapters
 from runner.papers.study.expected_caveats import ExpectedCaveat, caveats_section, unexpected_caveats
 from runner.papers.study.manifest import CoverRun
@@ -23,19 +24,14 @@ from runner.reporting.document import (
     Code,
     Cover,
     Document,
-    Formula,
-    Items,
-    Notice,
     Provenance,
     Section,
     Table,
     Text,
-    Verdicts,
 )
 from runner.reporting.figures import cover
 from runner.reporting.outline import number_sections
 from runner.reporting.run_report import provenance
-from runner.reporting.verdicts import find_conditional_claims
 from runner.schema.model import StrictModel
 from runner.store import Calibration, Run
 
@@ -154,7 +150,7 @@ def _places(sections: Sequence[Section]) -> tuple[dict[str, str], dict[str, str]
         place = f"§{chapter.number}"
         titles[chapter.section.title] = place
         for block in chapter.section.blocks:
-            if not isinstance(block, Text | Items | Code | Notice | Formula | Provenance) and block.origin.number:
+            if hasattr(block, "origin") and block.origin.number:
                 numbers.setdefault(block.origin.number.lower(), place)
     return titles, numbers
 

@@ -1,7 +1,7 @@
 """Figures as plain data: curves on axes, maps of coloured cells, and long curves with fewer points."""
 
 import math
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, field, replace
 from typing import ClassVar, Literal
 
@@ -9,6 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from runner.base.arrays import FloatArray
+from runner.reporting.block import Block
 from runner.reporting.table import Origin
 
 POINTS = 2000
@@ -137,7 +138,7 @@ class Map:
 
 
 @dataclass(frozen=True)
-class Curves:
+class Curves(Block):
     """A figure of curves: interactive in HTML (zoom, hover, legend toggles), a still in the PDF.
 
     Attributes:
@@ -149,15 +150,21 @@ class Curves:
     """
 
     block: ClassVar[str] = "chart"
+    word: ClassVar[str] = "figure"
+    actions: ClassVar[tuple[str, ...]] = ("enlarge", "svg", "csv")
     caption: str
     panels: Sequence[Panel]
     columns: int = 2
     origin: Origin = field(default_factory=Origin)
     finding: str = ""
 
+    def texts(self) -> Iterator[str]:
+        """Yield the finding and the caption."""
+        yield from (self.finding, self.caption)
+
 
 @dataclass(frozen=True)
-class Maps:
+class Maps(Block):
     """Heat maps with one scale of colours: interactive in HTML, a still in the PDF.
 
     Attributes:
@@ -170,12 +177,18 @@ class Maps:
     """
 
     block: ClassVar[str] = "chart"
+    word: ClassVar[str] = "figure"
+    actions: ClassVar[tuple[str, ...]] = ("enlarge", "svg", "csv")
     caption: str
     value_label: str
     panels: Sequence[Map]
     log: bool = False
     columns: int = 2
     origin: Origin = field(default_factory=Origin)
+
+    def texts(self) -> Iterator[str]:
+        """Yield the caption."""
+        yield self.caption
 
 
 def thin(series: Series, points: int = POINTS) -> Series:

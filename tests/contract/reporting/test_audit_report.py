@@ -8,10 +8,12 @@ import pytest
 from runner.papers.audit.audit import audit
 from runner.papers.audit.verdict import VERDICTS
 from runner.papers.reporting.audit_report import audit_document
-from runner.reporting import outline
-from runner.reporting.document import Curves, Equations, Table
+from runner.papers.reporting.equation import Equations
+from runner.reporting import mathml, outline
+from runner.reporting.document import Curves, Table
+from runner.reporting.outline import tallies
 from runner.reporting.render import render_html
-from runner.reporting.verdicts import WORDS, tallies
+from runner.reporting.verdicts import WORDS
 
 
 @pytest.fixture(scope="module")

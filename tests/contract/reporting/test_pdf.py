@@ -1,7 +1,6 @@
 """Documents as PDF by Typst: any string, the same bytes each time."""
 
 from dataclasses import replace
-from typing import get_args
 
 import numpy as np
 import pytest
@@ -15,9 +14,9 @@ from runner.reporting.table import numbers
 from runner.reporting.templating import quote_typst, typst_environment, typst_value
 
 
-@pytest.mark.parametrize("kind", get_args(Block), ids=lambda kind: kind.block)
+@pytest.mark.parametrize("kind", Block.__subclasses__(), ids=lambda kind: kind.block)
 def test_every_block_type_has_a_macro(kind):
-    blocks = typst_environment().get_template("blocks.typ.j2").make_module({})
+    blocks = typst_environment().get_template(f"{kind.templates}.typ.j2").make_module({})
     assert callable(getattr(blocks, kind.block))
 
 

@@ -5,12 +5,12 @@ from collections import Counter
 
 import pytest
 
+from runner.papers.reporting.claims import Verdicts
 from runner.reporting import outline
-from runner.reporting.document import Curves, Picture, Table, Verdicts
+from runner.reporting.document import Curves, Picture, Table
 from runner.reporting.mathml import faulty
-from runner.reporting.outline import Places
+from runner.reporting.outline import Places, tallies
 from runner.reporting.render import write_report
-from runner.reporting.verdicts import tallies
 from runner.reporting.words import PRESET
 
 ONCE = (

@@ -5,13 +5,14 @@ import re
 import numpy as np
 import pytest
 
+from runner.papers.reporting.claims import Verdicts
 from runner.papers.study.chapters import Chapters
 from runner.papers.study.measured import findings
 from runner.papers.study.report import study_document
 from runner.papers.study.results import Results
 from runner.papers.study.study import load_study
 from runner.reporting import outline
-from runner.reporting.document import Curves, Notice, Picture, Playback, Section, Table, Text, Verdicts
+from runner.reporting.document import Curves, Notice, Picture, Playback, Section, Table, Text
 from runner.reporting.mathml import faulty
 from runner.reporting.render import write_report
 from runner.reporting.words import PRESET

@@ -2,8 +2,9 @@
 
 from support.sample_document import equations
 
-from runner.reporting.document import Claim, ClaimResult, Document, Section, Verdicts
-from runner.reporting.verdicts import find_conditional_claims, tallies
+from runner.papers.reporting.claims import Claim, ClaimResult, Verdicts, find_conditional_claims
+from runner.reporting.document import Document, Section
+from runner.reporting.outline import tallies
 
 
 def claim(number, *verdicts):

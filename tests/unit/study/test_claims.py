@@ -6,10 +6,10 @@ import numpy as np
 import pytest
 from support.made_up_runs import made_up_metric, made_up_run
 
+from runner.papers.reporting.claims import Verdicts
 from runner.papers.reporting.published_claims import CONTRADICTION, PublishedClaim, PublishedStatement
 from runner.papers.study.claims import judged_claims, judged_statements, legend
 from runner.papers.study.results import MissingError
-from runner.reporting.document import Verdicts
 from runner.reporting.words import PRESET
 
 NUMBER = {

@@ -9,7 +9,7 @@ import re
 from collections import ChainMap
 from collections.abc import Mapping
 from dataclasses import replace
-from typing import Any, get_args
+from typing import Any
 
 import numpy as np
 
@@ -17,11 +17,12 @@ from runner.base.errors import RunnerError
 from runner.papers.expressions.evaluator import Budget, Scope
 from runner.papers.expressions.grammar import ExpressionError, parse
 from runner.papers.expressions.insertions import insertions
+from runner.papers.reporting.claims import Claim
 from runner.papers.study.measured import Condition, Measured
 from runner.papers.study.prose.signals import Quantity
 from runner.papers.study.prose.tables import Column
 from runner.papers.study.results import MissingError
-from runner.reporting.document import Block, Claim, Panel, Section, Series
+from runner.reporting.document import Block, Panel, Section, Series
 from runner.reporting.table import Number
 
 OPEN, CLOSE = "\uf000", "\uf001"
@@ -33,7 +34,7 @@ _STATEMENT = re.compile(r"\{%|%\}|\{#")
 _SET = re.compile(r"^\{% set (\w+) = (.*?) %\}$", re.MULTILINE | re.DOTALL)
 _BRANCHES = (ast.IfExp, ast.BoolOp, ast.Not)
 _MEMBERS = {Measured: ("value", "shown", "near", "with_other"), Condition: ("holds",), Quantity: ()}
-_HANDED = (*get_args(Block), Section, Column, Number, Panel, Series, Claim, np.ndarray)
+_HANDED = (Block, Section, Column, Number, Panel, Series, Claim, np.ndarray)
 
 
 class Values:

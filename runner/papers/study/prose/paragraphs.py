@@ -5,7 +5,7 @@ import math
 import re
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
-from typing import Any, get_args
+from typing import Any
 
 from markdown_it import MarkdownIt
 from markdown_it.token import Token
@@ -153,7 +153,7 @@ class Paragraphs:
 def _is_block(value: Any) -> bool:
     if isinstance(value, Sequence) and not isinstance(value, str):
         return all(_is_block(each) for each in value)  # of none, as where no run failed, nothing is shown
-    return dataclasses.is_dataclass(value) and isinstance(value, (*get_args(Block), Section))
+    return dataclasses.is_dataclass(value) and isinstance(value, Block | Section)
 
 
 def values_shown(text: str, values: Values) -> dict[int, str]:

@@ -5,12 +5,12 @@ import xml.etree.ElementTree as ET
 import pytest
 from support import sample_document
 
-from runner.reporting import formulas
+from runner.reporting import mathml
 from runner.reporting.document import Document, Formula, Section, Text
 
 
 def made(text, *, displayed=False):
-    return formulas.mathml([text], displayed=displayed)[text]
+    return mathml.mathml([text], displayed=displayed)[text]
 
 
 def test_a_formula_is_mathematics_that_can_be_selected():
@@ -53,10 +53,10 @@ def test_a_long_formula_in_a_line_breaks_before_its_signs_and_a_displayed_one_do
 
 @pytest.mark.parametrize(
     "source",
-    ["#read(\"/etc/passwd\")", "unknown_name", "a $ b", "sqrt(", 'std.read("/formulas.typ")', "std.sys.inputs", '"'],
+    ["#read(\"/etc/passwd\")", "unknown_name", "a $ b", "sqrt(", 'std.read("/mathml.typ")', "std.sys.inputs", '"'],
 )  # fmt: skip
 def test_a_faulty_formula_is_refused_and_the_others_are_made(source):
-    found = formulas.mathml(["alpha", source, "beta"], displayed=False)
+    found = mathml.mathml(["alpha", source, "beta"], displayed=False)
     assert found[source] is None
     assert found["alpha"] is not None
     assert found["beta"] is not None
@@ -64,20 +64,20 @@ def test_a_faulty_formula_is_refused_and_the_others_are_made(source):
 
 def test_faulty_names_what_a_report_would_show_as_source():
     document = Document("", "", "$omega$", [Section("", [Text("$nonsense_here$ $x$"), Formula("worse here")])], "")
-    assert formulas.faulty(document) == ["worse here", "nonsense_here"]
+    assert mathml.faulty(document) == ["worse here", "nonsense_here"]
 
 
 def test_one_compilation_serves_all_formulas_and_is_kept(monkeypatch):
     texts = [f"kept_{i}".replace("kept", "k") for i in range(20)]
     calls = []
-    compile_ = formulas.typst.compile
+    compile_ = mathml.typst.compile
     monkeypatch.setattr(
-        formulas.typst, "compile", lambda *given, **named: calls.append(given) or compile_(*given, **named)
+        mathml.typst, "compile", lambda *given, **named: calls.append(given) or compile_(*given, **named)
     )
-    formulas.mathml(texts, displayed=False)
-    formulas.mathml(texts, displayed=False)
+    mathml.mathml(texts, displayed=False)
+    mathml.mathml(texts, displayed=False)
     assert len(calls) == 1
 
 
 def test_a_document_without_mathematics_has_no_faulty_formula():
-    assert formulas.faulty(Document("", "", "", sample_document.document().sections[0].sections, "")) == []
+    assert mathml.faulty(Document("", "", "", sample_document.document().sections[0].sections, "")) == []
