@@ -10,11 +10,9 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from runner.base.errors import RunnerError, unknown
-from runner.base.paths import STUDY_FILE
 from runner.base.sanitize import one_line
 from runner.cli.arguments import WIDTHS, Parser, Stored, millimetres
-from runner.config.compose.files import outputs_dir
-from runner.papers.study.names import study_names
+from runner.cli.commands import find_document
 
 if TYPE_CHECKING:
     from runner.reporting.charts.sheet import Sheet
@@ -29,7 +27,7 @@ def add_arguments(parser: Parser) -> None:
     """Add the arguments."""
     parser.add_argument(
         "folders",
-        type=Stored("run", "sweep", "tuning", other=_study_of),
+        type=Stored("run", "sweep", "tuning", other=find_document),
         nargs="+",
         metavar="DIR",
         help="a run, sweep or tuning; several runs or sweeps to compare; a study's name or folder; or latest",
@@ -89,24 +87,12 @@ def _write_motion(figures: "Mapping[str, Figure]", path: Path, sheet: "Sheet") -
     return written
 
 
-def _study_of(path: Path) -> tuple[str, Path] | None:
-    """Return a study by its name, its folder or its report's folder, and its outputs folder; None for anything else."""
-    if (path / STUDY_FILE).is_file():
-        return str(path), outputs_dir()
-    if path.name not in study_names():
-        return None
-    if not path.is_dir() and path == Path(path.name):
-        return path.name, outputs_dir()
-    return (path.name, path.parent.parent) if path.resolve().parent.name == "reports" else None
-
-
 def _document(paths: Sequence[Path]) -> "tuple[Document, Path]":
-    studies = [study for path in paths if (study := _study_of(path)) is not None]
-    if studies and len(paths) > 1:
+    others = [compose for path in paths if (compose := find_document(path)) is not None]
+    if others and len(paths) > 1:
         raise RunnerError("DIR: a study among several results. Allowed: one study, or runs, or sweeps.")
-    study = studies[0] if studies else None
-    if study is not None:
-        return _of_study(*study)
+    if others:
+        return others[0]()
     from runner import store
     from runner.reporting.stored import compose_report
     from runner.store.kinds import kind_of
@@ -115,24 +101,6 @@ def _document(paths: Sequence[Path]) -> "tuple[Document, Path]":
         if kind_of(path) == "run":
             _tell_failure(store.open_run(path))
     return compose_report(paths)
-
-
-def _of_study(name: str, outputs: Path) -> "tuple[Document, Path]":
-    folder, mend = outputs / "reports" / Path(name).name, f"`runner reproduce {name} --output {outputs}` makes"
-    if not folder.is_dir():
-        raise RunnerError(f"no report on {name} in {outputs}; {mend} it")
-    from runner.papers.study.chapters import Chapters
-    from runner.papers.study.execute import count_missing, make_all
-    from runner.papers.study.report import study_document
-    from runner.papers.study.study import load_study
-
-    print(f"looking for the runs of {name} ...", file=sys.stderr)
-    study = load_study(name)
-    missing = count_missing(study, outputs)
-    if missing:
-        raise RunnerError(f"{missing} runs of {name} are not stored in {outputs} as they are made today; {mend} them")
-    study.measure(outputs)
-    return study_document(Chapters(study, *make_all(study, outputs))), folder
 
 
 def _tell_failure(run: "Run") -> None:

@@ -5,20 +5,16 @@ Example: runner list controllers
 
 import re
 from argparse import Namespace
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from functools import partial
 from pathlib import Path
-from typing import TYPE_CHECKING
 
 from runner.base.errors import RunnerError, unknown
 from runner.base.former_names import TOPICS as FORMER_TOPICS
-from runner.base.paths import studies_with
 from runner.base.sanitize import escaped, one_line
 from runner.cli.arguments import Parser
+from runner.cli.commands import Topic, added_topics
 from runner.config.compose.files import group_options, groups
-
-if TYPE_CHECKING:
-    from runner.papers.reporting.published_claims import PublishedClaim
 
 
 def add_arguments(parser: Parser) -> None:
@@ -71,51 +67,18 @@ def _read_bullets(docstring: str) -> dict[str, str]:
     return meanings
 
 
-def _list_claims(_: Sequence[Path]) -> dict[str, str]:
-    from runner.papers.reporting.published_claims import CLAIMS, STATEMENTS, load_claims, load_statements
-
-    claims = {
-        f"{source} {claim.number}": f"{claim.statement}{_printed(claim)} ({claim.place})"
-        for source in studies_with(CLAIMS)
-        for claim in load_claims(source)
-    }
-    statements = {
-        f"{source} {number}": f"{each.statement} ({each.place})"
-        for source in studies_with(STATEMENTS)
-        for number, each in enumerate(load_statements(source), start=1)
-    }
-    return claims | statements
-
-
-def _printed(claim: "PublishedClaim") -> str:
-    """Return a claim's value as printed; an empty string if the source gives no number."""
-    return f": {' to '.join(f'{value:g}' for value in claim.printed)} {claim.unit}" if claim.printed else ""
-
-
 def _list_baselines(_: Sequence[Path]) -> dict[str, str]:
     from runner.store.baselines import shipped_baselines
 
     return shipped_baselines()
 
 
-def _list_studies(_: Sequence[Path]) -> dict[str, str]:
-    from runner.papers.study.manifest import read_manifest
-    from runner.papers.study.names import find_study, study_names
-
-    found = {name: read_manifest(find_study(name).folder) for name in study_names()}
-    apart = {
-        name: "" if manifest.in_all else " (not made by `runner reproduce all`)" for name, manifest in found.items()
-    }
-    return {name: f"{manifest.title}. {manifest.source}{apart[name]}" for name, manifest in found.items()}
-
-
-TOPICS: Mapping[str, Callable[[Sequence[Path]], dict[str, str]]] = {
+TOPICS: Mapping[str, Topic] = {
     **{_topic(group): partial(group_options, group) for group in groups()},
     "plants": _list_plants,
     "metrics": _list_metrics,
-    "claims": _list_claims,
     "baselines": _list_baselines,
-    "studies": _list_studies,
+    **added_topics(),
 }
 """Topics: each has a function that returns names with one-line descriptions."""
 

@@ -5,7 +5,6 @@ interrupted, 143 terminated. This module imports little, so that help and comple
 """
 
 import contextlib
-import importlib
 import io
 import os
 import shlex
@@ -21,21 +20,10 @@ from runner.base.errors import DISK_FULL, RunnerError, describe_part_error, desc
 from runner.base.former_names import COMMANDS as FORMER_COMMANDS
 from runner.base.progress import show_progress
 from runner.base.sanitize import one_line
+from runner.cli import commands
 from runner.cli.arguments import Parser
+from runner.cli.commands import OVERRIDES
 from runner.config.compose.files import groups
-
-GROUPS = {
-    "Run experiments": ("run", "sweep", "status", "tune", "calibrate"),
-    "Question a result": ("compare", "challenge", "check", "sensitivity", "verify"),
-    "Look at results": ("results", "report", "table", "figures"),
-    "Real arms": ("doctor",),
-    "Papers": ("reproduce", "study", "audit", "benchmark"),
-    "Set up": ("list", "schema", "example"),
-}
-"""Names of the commands, by what a person wants to do."""
-COMMANDS = tuple(name for names in GROUPS.values() for name in names)
-OVERRIDES = ("run", "sweep")
-"""Commands whose line is overrides and flags of Hydra; `run` is the command of a line that names none."""
 
 COMMON = Parser(prog="runner", add_help=False)
 """Options that every command has."""
@@ -170,12 +158,12 @@ def _print_path(run: Callable[[], int]) -> int:
     return code
 
 
-def build_parser(names: Iterable[str] = COMMANDS) -> Parser:
+def build_parser(names: Iterable[str] = commands.names()) -> Parser:
     """Return the parser of the command line; only the modules of the commands named are imported."""
     root = Parser(prog="runner", parents=[COMMON], usage="runner [COMMAND] ...")
     actions = root.add_subparsers(dest="command", metavar="COMMAND", prog="runner")
     for name in names:
-        module = importlib.import_module(f"runner.cli.{_module(name)}")
+        module = commands.load(name)
         root.commands[name] = parser = actions.add_parser(name, parents=[COMMON])
         parser.describe(str(module.__doc__))
         module.add_arguments(parser)
@@ -186,11 +174,12 @@ def build_parser(names: Iterable[str] = COMMANDS) -> Parser:
 def help_text() -> str:
     """Return the help on all commands."""
     lines = [GUIDE.splitlines()[0]]
-    for group, names in GROUPS.items():
+    added = {"Installed packages": tuple(added)} if (added := commands.installed()) else {}
+    for group, names in (commands.groups() | added).items():
         lines += ["", group]
         modules: dict[str, list[str]] = {}
         for name in names:
-            modules.setdefault(_summary(name), []).append(name)
+            modules.setdefault(commands.summary(name), []).append(name)
         for summary, same in modules.items():
             first = f"  {', '.join(same):<{_COLUMN}}"
             lines.append(textwrap.fill(summary, _WIDTH, initial_indent=first, subsequent_indent=" " * len(first)))
@@ -206,7 +195,7 @@ def run_line(words: Sequence[str]) -> int:
         print(GUIDE, end="")
     elif first in ("-h", "--help", "help"):
         print(help_text(), end="")
-    elif first == "--version" or ("--version" in words and (first not in COMMANDS or first in OVERRIDES)):
+    elif first == "--version" or ("--version" in words and (first not in commands.names() or first in OVERRIDES)):
         from importlib.metadata import version
 
         print(version("arm-control-runner"))
@@ -214,11 +203,19 @@ def run_line(words: Sequence[str]) -> int:
         from runner.cli.completion.complete import shell_code
 
         print(shell_code(words))
-    elif first in COMMANDS and first not in OVERRIDES:
+    elif first not in OVERRIDES and (first in commands.names() or _is_installed(first)):
         return _run_command(first, rest)
     else:
         return _run_overrides(words)
     return 0
+
+
+def _may_be_command(word: str) -> bool:
+    return word[:1].isalpha() and "=" not in word
+
+
+def _is_installed(word: str) -> bool:
+    return _may_be_command(word) and word in commands.installed()
 
 
 def _run_command(name: str, words: Sequence[str]) -> int:
@@ -238,21 +235,13 @@ def _run_overrides(words: Sequence[str]) -> int:
     if len(words) > 1 and words[1].startswith("=") and "=" not in first:
         given = "".join(words[1:3]) if words[1] == "=" else words[1]
         raise RunnerError(f"an override has no spaces around its '=': `runner {shlex.join([first + given])}`")
-    if first not in OVERRIDES and first and first[0].isalpha() and "=" not in first:
-        raise RunnerError(f"{unknown('command', first, COMMANDS)} A run starts with overrides such as robot=macro.")
+    if first not in OVERRIDES and _may_be_command(first):
+        raise RunnerError(
+            f"{unknown('command', first, commands.names())} A run starts with overrides such as robot=macro."
+        )
     if {"-h", "--help"} & {*words}:
         build_parser(["run"]).parse_args(["run", "--help"])
     from runner.cli.run import simulate
 
     many = ["-m"] if first == "sweep" else []
     return simulate([*many, *words[first in OVERRIDES :]])
-
-
-def _module(name: str) -> str:
-    return "run" if name in OVERRIDES else name
-
-
-def _summary(name: str) -> str:
-    """Return the first sentence of a command's description; reading it is faster than an import."""
-    description = Path(__file__).with_name(f"{_module(name)}.py").read_text().split('"""')[1]
-    return " ".join(description.partition("\n\n")[0].split())

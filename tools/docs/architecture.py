@@ -39,7 +39,8 @@ A curve connects a package with one that it imports. Imports that follow from th
 
 A claim of a study becomes a square on the first screen of its report by these files, in this order:
 
-- data, in `runner/papers/studies/thesis/`: `claims.yaml`, `runs.yaml`, `answers.md`
+- data: `runner/papers/studies/thesis/claims.yaml`, `runner/papers/studies/thesis/runs.yaml`,
+  `runner/papers/studies/thesis/answers.md`
 - verdict: `runner/papers/reporting/published_claims.py`, `runner/papers/study/claims.py`, from
   `runner/papers/study/results.py`
 - chapter: `runner/papers/study/chapters.py`, `runner/papers/study/prose/reader.py`,

@@ -16,7 +16,8 @@ import yaml
 
 from runner.base.paths import conf_dir
 from runner.calibration import CALIBRATIONS
-from runner.cli.main import COMMANDS, COMMON, build_parser
+from runner.cli import commands
+from runner.cli.main import COMMON, build_parser
 from runner.config.calibration import CalibrationSettings
 from runner.config.compose.files import group_options
 from runner.config.groups import GROUPS
@@ -270,7 +271,7 @@ def _commands() -> Iterator[str]:
     yield "Options of every command:\n\n| Argument | Meaning |\n|---|---|\n"
     yield from _arguments(COMMON)
     yield "\n"
-    parsers = build_parser(name for name in COMMANDS if name != "sweep").commands
+    parsers = build_parser(name for name in commands.names() if name != "sweep").commands
     for name, parser in parsers.items():
         example = str(parser.epilog).splitlines()[0].replace(": ", ": `", 1)
         yield f"### runner {name}\n\n{parser.description}\n\n{example}`\n\n"

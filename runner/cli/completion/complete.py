@@ -17,9 +17,10 @@ from argcomplete.lexers import split_line
 from argcomplete.shell_integration import shellcode
 
 from runner.base.errors import RunnerError, nearest
+from runner.cli import commands
 from runner.cli.arguments import Names, Parser, Stored
 from runner.cli.completion.overrides import Typed, metric_names, override_words
-from runner.cli.main import COMMANDS, build_parser
+from runner.cli.main import build_parser
 from runner.store.kinds import KINDS, WORD, Kind
 
 _MOST = 1000  # words
@@ -38,7 +39,7 @@ def complete(output: TextIO | None = None, leave: Callable[[int], object] = os._
     with contextlib.suppress(Exception):
         *_, words, _ = split_line(os.environ["COMP_LINE"], int(os.environ["COMP_POINT"]))
         name = next(_without_plugins(words[int(os.environ["_ARGCOMPLETE"]) :]), "")
-        parser = build_parser([name]) if name in COMMANDS else build_parser(["run"]).commands["run"]
+        parser = build_parser([name]) if name in commands.names() else build_parser(["run"]).commands["run"]
         _Finder()(
             parser,
             always_complete_options=False,
@@ -107,7 +108,7 @@ def _values(prefix: str, action: argparse.Action, parser: Parser, parsed_args: a
         typed = Typed(given.get("overrides") or [], folders, given.get("plugin") or [])
         yield from override_words(typed, prefix, parser.root)
         if parser.prog == "runner run" and not typed.overrides:
-            yield from COMMANDS
+            yield from commands.names()
     elif action.metavar == "GROUP=MODULE":
         yield from _plugin_words(prefix)
     elif isinstance(action.type, Stored):
@@ -118,7 +119,9 @@ def _values(prefix: str, action: argparse.Action, parser: Parser, parsed_args: a
         for name, words in _NAMED.items():
             if action.dest.startswith(name):
                 yield from _listed(prefix, words(parser))
-    if action.dest == "study" or (action.metavar in _FILES and not isinstance(action.type, Stored)):
+    if hasattr(action, "completer"):  # argcomplete's name of an argument's words
+        yield from _listed(prefix, action.completer(prefix=prefix, action=action))
+    if hasattr(action, "completer") or (action.metavar in _FILES and not isinstance(action.type, Stored)):
         yield from _files(prefix, folders_only=action.metavar not in ("FILE", "URDF", "PATH"))
 
 
@@ -135,18 +138,11 @@ def _topics(_: Parser) -> Iterable[str]:
     return TOPICS
 
 
-def _studies(parser: Parser) -> Iterable[str]:
-    from runner.papers.study.names import study_names
-
-    return (*study_names(), *(("audit", "all") if parser.prog == "runner reproduce" else ()))
-
-
 # By the prefix of the attribute that stores an argument.
 _NAMED: Mapping[str, Callable[[Parser], Iterable[str]]] = {
     "topic": _topics,
     "metric": lambda _: metric_names(),
     "objectives": lambda _: metric_names(),
-    "study": _studies,
 }
 
 

@@ -13,11 +13,13 @@ import sys
 from argparse import Namespace
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, replace
+from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING
 
 from runner.base import progress
 from runner.base.errors import RunnerError
+from runner.base.paths import STUDY_FILE
 from runner.cli.arguments import Parser
 from runner.config.compose.files import outputs_dir
 from runner.papers.study.changes import FILE
@@ -26,6 +28,7 @@ from runner.plugins.discovery import in_use, named_parts
 from runner.store.kinds import note, report_place
 
 if TYPE_CHECKING:
+    from runner.cli.commands import Compose
     from runner.papers.study.code import UserPlugin
     from runner.papers.study.expected_caveats import ExpectedCaveat
     from runner.papers.study.study import Study
@@ -51,7 +54,10 @@ class _Reproduced:
 def add_arguments(parser: Parser) -> None:
     """Add the arguments."""
     studies = ", ".join((*study_names(), AUDIT, "all"))
-    parser.add_argument("study", nargs="?", default="all", metavar="NAME", help=f"{studies} or a folder (default: all)")
+    study = parser.add_argument(
+        "study", nargs="?", default="all", metavar="NAME", help=f"{studies} or a folder (default: all)"
+    )
+    study.completer = lambda **_: (*study_names(), AUDIT, "all")  # type: ignore[attr-defined]
     parser.add_overrides("such as sweep.time_limit=60")
     parser.add_shared(
         output="outputs folder (default: outputs)",
@@ -184,3 +190,34 @@ def _audit(folder: Path) -> _Reproduced:
     table = as_csv([each for source in checked.values() for each in source])
     write_atomically(folder / "equations.csv", table.encode())
     return _Reproduced(audit_document(checked), {}, {})
+
+
+def find_document(path: Path) -> "Compose | None":
+    """Return the function that composes a study's report, by the study's name, its folder or its report's folder."""
+    if (path / STUDY_FILE).is_file():
+        return partial(_stored_document, str(path), outputs_dir())
+    if path.name not in study_names():
+        return None
+    if not path.is_dir() and path == Path(path.name):
+        return partial(_stored_document, path.name, outputs_dir())
+    if path.resolve().parent.name == "reports":
+        return partial(_stored_document, path.name, path.parent.parent)
+    return None
+
+
+def _stored_document(name: str, outputs: Path) -> "tuple[Document, Path]":
+    folder, mend = outputs / "reports" / Path(name).name, f"`runner reproduce {name} --output {outputs}` makes"
+    if not folder.is_dir():
+        raise RunnerError(f"no report on {name} in {outputs}; {mend} it")
+    from runner.papers.study.chapters import Chapters
+    from runner.papers.study.execute import count_missing, make_all
+    from runner.papers.study.report import study_document
+    from runner.papers.study.study import load_study
+
+    print(f"looking for the runs of {name} ...", file=sys.stderr)
+    study = load_study(name)
+    missing = count_missing(study, outputs)
+    if missing:
+        raise RunnerError(f"{missing} runs of {name} are not stored in {outputs} as they are made today; {mend} them")
+    study.measure(outputs)
+    return study_document(Chapters(study, *make_all(study, outputs))), folder

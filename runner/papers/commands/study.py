@@ -12,13 +12,20 @@ import shlex
 import sys
 from argparse import Namespace
 from collections import Counter
+from collections.abc import Sequence
 from dataclasses import asdict
 from pathlib import Path
+from typing import TYPE_CHECKING
 
+from runner.base.paths import studies_with
 from runner.base.sanitize import one_line
 from runner.cli.arguments import Parser
 from runner.config.compose.files import outputs_dir
 from runner.papers.study.changes import KINDS, ROUNDED, Change, Value, changes, read_conclusions
+from runner.papers.study.names import study_names
+
+if TYPE_CHECKING:
+    from runner.papers.reporting.published_claims import PublishedClaim
 
 _TOLD = 20  # changes of a kind that are printed without --all
 
@@ -29,7 +36,8 @@ def add_arguments(parser: Parser) -> None:
     new = actions.add_parser("new", help="write a first study into a folder")
     new.add_argument("folder", type=Path, metavar="DIR", help="a new folder, or an empty one")
     check = actions.add_parser("check", help="check a study")
-    check.add_argument("study", metavar="DIR", help="the study's folder, or the name of an installed one")
+    study = check.add_argument("study", metavar="DIR", help="the study's folder, or the name of an installed one")
+    study.completer = lambda **_: study_names()  # type: ignore[attr-defined]
     check.add_shared(output="outputs folder (default: outputs)")
     check.set_defaults(output=outputs_dir())
     check.add_argument("--code", action="store_true", help="run the Python of DIR")
@@ -102,3 +110,39 @@ def _value(value: Value) -> str:
     if value is None:
         return "none"
     return f"{value:.6g}" if isinstance(value, float) else value
+
+
+def _list_claims(_: Sequence[Path]) -> dict[str, str]:
+    from runner.papers.reporting.published_claims import CLAIMS, STATEMENTS, load_claims, load_statements
+
+    claims = {
+        f"{source} {claim.number}": f"{claim.statement}{_printed(claim)} ({claim.place})"
+        for source in studies_with(CLAIMS)
+        for claim in load_claims(source)
+    }
+    statements = {
+        f"{source} {number}": f"{each.statement} ({each.place})"
+        for source in studies_with(STATEMENTS)
+        for number, each in enumerate(load_statements(source), start=1)
+    }
+    return claims | statements
+
+
+def _printed(claim: "PublishedClaim") -> str:
+    """Return a claim's value as printed; an empty string if the source gives no number."""
+    return f": {' to '.join(f'{value:g}' for value in claim.printed)} {claim.unit}" if claim.printed else ""
+
+
+def _list_studies(_: Sequence[Path]) -> dict[str, str]:
+    from runner.papers.study.manifest import read_manifest
+    from runner.papers.study.names import find_study, study_names
+
+    found = {name: read_manifest(find_study(name).folder) for name in study_names()}
+    apart = {
+        name: "" if manifest.in_all else " (not made by `runner reproduce all`)" for name, manifest in found.items()
+    }
+    return {name: f"{manifest.title}. {manifest.source}{apart[name]}" for name, manifest in found.items()}
+
+
+TOPICS = {"claims": _list_claims, "studies": _list_studies}
+"""Topics that this adds to `runner list`."""

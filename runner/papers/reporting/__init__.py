@@ -1,1 +1,1 @@
-"""What reports on published sources add: verdicts on claims and equations, and the audit."""
+"""Parts of reports on published sources: verdicts on claims and equations, and the audit."""

@@ -79,7 +79,7 @@ def test_a_typed_measure_is_found(text):
 
 @pytest.mark.parametrize("source", sources())
 def test_the_mathematics_of_every_entry_is_valid(source):
-    from runner.reporting import formulas
+    from runner.reporting import mathml
 
     texts = [
         text
@@ -94,5 +94,5 @@ def test_the_mathematics_of_every_entry_is_valid(source):
             shown += [form.math] if form.math else []
             nodes = [parse(text).root for text in form.elements.values()] if form.readable else []
             shown += [typeset(node, letters=letters) for node in (*map(left_side, form.elements), *nodes)]
-    images = formulas.mathml(list(dict.fromkeys(inline + shown)), displayed=False)
+    images = mathml.mathml(list(dict.fromkeys(inline + shown)), displayed=False)
     assert [text for text, image in images.items() if image is None] == []

@@ -13,7 +13,8 @@ import yaml
 from support.engines import ASKED
 from support.printed import without_caveats
 
-from runner.cli.main import COMMANDS, GROUPS, GUIDE, build_parser
+from runner.cli import commands
+from runner.cli.main import GUIDE, build_parser
 from runner.config.compose.files import groups
 from runner.store import open_sweep
 from runner.sweeps import job
@@ -29,14 +30,14 @@ def test_help_names_every_command(cli, flag):
     assert ending.code == 0
     lines = ending.out.splitlines()
     listed = [line[2:].partition("  ")[0].split(", ") for line in lines if re.match(r"  [a-z]", line)]
-    assert tuple(name for names in listed for name in names) == COMMANDS
-    assert all(group in lines for group in GROUPS)
+    assert tuple(name for names in listed for name in names) == commands.names()
+    assert all(group in lines for group in commands.groups())
     for name in ("--plugin GROUP=MODULE", "-q, --quiet", *groups(), "3 internal error"):
         assert name in ending.out
     assert max(map(len, lines)) <= 120
 
 
-@pytest.mark.parametrize("name", COMMANDS)
+@pytest.mark.parametrize("name", commands.names())
 def test_the_help_of_a_command_is_short_and_ends_with_an_example_that_parses(name, monkeypatch):
     monkeypatch.setenv("COLUMNS", "80")
     monkeypatch.setattr("runner.cli.arguments.find_folder", lambda text, kinds: Path(text))

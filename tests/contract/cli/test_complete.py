@@ -2,8 +2,8 @@
 
 import pytest
 
+from runner.cli import commands
 from runner.cli.list import TOPICS
-from runner.cli.main import COMMANDS
 from runner.config.compose.files import group_options
 from runner.plugins.metric_units import units
 
@@ -16,7 +16,7 @@ def stored(tmp_path):
 
 
 def test_commands_stand_first(tab):
-    assert set(COMMANDS) < set(tab(""))
+    assert set(commands.names()) < set(tab(""))
     assert tab("rep") == ["repetitions=", "report", "reproduce"]
     assert "report" not in tab("robot=macro ")
     assert {"run", "sweep"} < set(tab(""))
@@ -35,7 +35,7 @@ def test_options_are_those_of_the_command(tab):
 
 
 def test_every_command_tells_its_options(tab):
-    assert [command for command in COMMANDS if "--help" not in tab(f"{command} -")] == []
+    assert [command for command in commands.names() if "--help" not in tab(f"{command} -")] == []
 
 
 def test_values_of_options(tab):

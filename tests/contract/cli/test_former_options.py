@@ -5,22 +5,23 @@ import pytest
 from runner.base.former_names import COMMANDS as FORMER_COMMANDS
 from runner.base.former_names import FILES, OPTIONS
 from runner.base.former_names import TOPICS as FORMER_TOPICS
+from runner.cli.commands import OVERRIDES, names
 from runner.cli.list import TOPICS
-from runner.cli.main import COMMANDS, OVERRIDES, build_parser
+from runner.cli.main import build_parser
 
 
 @pytest.mark.parametrize(("former", "new"), FORMER_COMMANDS.items())
 def test_a_former_command_is_rejected_with_the_new_name(cli, former, new):
     ending = cli(former, "a", "b")
     assert (ending.code, ending.out, ending.err) == (2, "", f"runner: {former} is now called {new}.\n")
-    assert new in COMMANDS
-    assert former not in COMMANDS
+    assert new in names()
+    assert former not in names()
 
 
 @pytest.mark.parametrize(("former", "new"), [(former, new) for former, names in OPTIONS.items() for new in names])
 @pytest.mark.parametrize("value", [" x", "=x", ""])
 def test_a_former_option_is_rejected_with_the_new_name(cli, former, new, value):
-    parsers = build_parser(set(COMMANDS) - set(OVERRIDES)).commands
+    parsers = build_parser(set(names()) - set(OVERRIDES)).commands
     options = {command: parser._option_string_actions for command, parser in parsers.items()}
     taking = [command for command, own in options.items() if new.split()[0] in own and former not in own]
     assert taking or former == "--html"

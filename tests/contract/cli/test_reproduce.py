@@ -5,9 +5,9 @@ import json
 
 import pytest
 
-from runner.cli import reproduce
 from runner.papers.audit.audit import audit
 from runner.papers.audit.verdict import VERDICTS
+from runner.papers.commands import reproduce
 from runner.papers.study.execute import make_all
 from runner.papers.study.measured import Measured, finding
 from runner.papers.study.study import load_study

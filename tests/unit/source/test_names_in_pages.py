@@ -8,8 +8,9 @@ from pathlib import Path
 import pytest
 from support.pages import ROOT, pages, steps
 
+from runner.cli import commands
 from runner.cli.completion.overrides import metric_names
-from runner.cli.main import COMMANDS, build_parser
+from runner.cli.main import build_parser
 from runner.config.compose.files import group_options, groups
 
 GENERATED = ("reference.md", "architecture.md")
@@ -65,7 +66,7 @@ class Names:
             yield from (
                 f"command {name}"
                 for name in re.findall(r"\brunner ([a-z]+)\b(?![=._/\w])", line)
-                if name not in COMMANDS
+                if name not in commands.names()
             )
             yield from (each for each in re.findall(r"(?<![\w-])--[a-z][a-z-]+", line) if each not in self.options)
             yield from self._keys(line)

@@ -7,16 +7,16 @@ from runner.store import physics, syntax
 
 # Modules for finished runs, for output and storage, or for the resolved config, which is in the hash itself.
 OTHERS = {
-    "__init__.py", "__main__.py", "analysis", "api", "audit", "base/arrays.py", "base/bounded_json.py",
+    "__init__.py", "__main__.py", "analysis", "api", "base/arrays.py", "base/bounded_json.py",
     "base/bounded_yaml.py", "base/cache.py", "base/data_file.py", "base/dotted_keys.py", "base/engine_output.py",
-    "base/engines.py", "base/errors.py", "runner/papers/expressions", "base/former_names.py", "base/lazy_modules.py",
+    "base/engines.py", "base/errors.py", "base/former_names.py", "base/lazy_modules.py",
     "base/limits.py", "base/machine.py", "base/paths.py", "base/progress.py", "base/quantities.py",
     "base/sanitize.py", "base/tables.py", "base/ticks.py", "cli", "config/compose", "config/composed.py",
     "config/dependent_keys.py", "config/engine_check.py", "config/json_schema.py", "config/judgement.py",
-    "config/limits.py", "controllers/stability.py", "doctor", "metrics/caveats", "plants/agreement.py",
+    "config/limits.py", "controllers/stability.py", "doctor", "metrics/caveats", "papers", "plants/agreement.py",
     "plants/servo_contact_stability.py", "plugins/discovery.py", "plugins/folder_code.py", "recordings", "reporting",
     "schema/model.py", "schema/units.py", "simulation/provenance.py", "simulation/tick_time.py", "statistics",
-    "store", "studies", "study", "sweeps/at_work.py", "sweeps/batch.py", "sweeps/challenge", "sweeps/check.py",
+    "store", "sweeps/at_work.py", "sweeps/batch.py", "sweeps/challenge", "sweeps/check.py",
     "sweeps/closed_nodes.py", "sweeps/deadline.py", "sweeps/differing.py", "sweeps/drawn.py", "sweeps/engine.py",
     "sweeps/estimate.py", "sweeps/finer_step.py", "sweeps/gathering.py", "sweeps/job.py", "sweeps/measurements.py",
     "sweeps/outcomes.py", "sweeps/part.py", "sweeps/plan.py", "sweeps/preview.py", "sweeps/question.py",

@@ -86,7 +86,7 @@ def test_the_table_counts_by_package_and_shows_what_was_not_found():
     assert counts == {
         "runner/cli": ["0", "0", "0", "1"],
         "runner/plants": ["1", "1", "0", "0"],
-        "runner/papers/studies": ["0", "0", "1", "0"],
+        "runner/papers": ["0", "0", "1", "0"],
         "all": ["1", "1", "1", "1"],
     }
     assert lines[5:] == [

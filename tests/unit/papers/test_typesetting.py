@@ -4,7 +4,7 @@ import pytest
 
 from runner.papers.expressions.parser import parse
 from runner.papers.expressions.typesetting import linear, symbol, typeset
-from runner.reporting import formulas
+from runner.reporting import mathml
 
 
 @pytest.mark.parametrize(
@@ -66,7 +66,7 @@ def test_matrices_are_set_as_a_source_prints_them():
 )  # fmt: skip
 def test_what_is_typeset_is_valid(text):
     source = typeset(parse(text).root)
-    assert formulas.mathml([source], displayed=False)[source] is not None
+    assert mathml.mathml([source], displayed=False)[source] is not None
 
 
 def test_what_is_marked_is_set_apart_with_its_sign():
@@ -82,7 +82,7 @@ def test_a_matrix_is_valid():
     node = parse("[[-s1, 1/2*c12], [atan2(y, x), 0]]").root
     text = typeset(node, {node.arguments[0].arguments[1]})
     assert text.count("differs(") == 1
-    assert formulas.mathml([text], displayed=False)[text] is not None
+    assert mathml.mathml([text], displayed=False)[text] is not None
 
 
 def test_a_line_of_text_has_greek_letters_and_low_digits():
