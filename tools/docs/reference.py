@@ -19,7 +19,7 @@ from runner.calibration import CALIBRATIONS
 from runner.cli import commands
 from runner.cli.main import COMMON, build_parser
 from runner.config.calibration import CalibrationSettings
-from runner.config.compose.files import group_options
+from runner.config.compose.files import group_options, place_in
 from runner.config.groups import GROUPS
 from runner.config.json_schema import meanings
 from runner.config.judgement import Bound, CaveatsConfig
@@ -154,13 +154,13 @@ def _of_kind(group: str, kind: str) -> Mapping[str, Any]:
 
     A file of the root's package holds them below its group.
     """
-    own = (conf_dir() / group / f"{kind}.yaml").exists()
+    own = place_in(conf_dir(), f"{group}/{kind}.yaml").exists()
     values = _read(f"{group}/{kind if own else _OPTION.get(group, 'none')}")
     return dict(values.get(group, values))
 
 
 def _read(name: str) -> dict[str, Any]:
-    return dict(yaml.safe_load((conf_dir() / f"{name}.yaml").read_text(encoding="utf-8")))
+    return dict(yaml.safe_load(place_in(conf_dir(), f"{name}.yaml").read_text(encoding="utf-8")))
 
 
 def _table(group: str, model: type[StrictModel], defaults: Mapping[str, Any]) -> str:

@@ -21,10 +21,10 @@ from omegaconf import DictConfig, OmegaConf
 
 from runner.base.dotted_keys import check_references
 from runner.base.errors import ConfigError
-from runner.base.paths import conf_dir, studies_dir, studies_with
+from runner.base.paths import conf_dir
 from runner.base.sanitize import quoted
 from runner.config.compose.composition_errors import COMPOSITION_ERRORS, explain
-from runner.config.compose.files import groups, state_of, user_overrides
+from runner.config.compose.files import STUDY_GROUPS, built_in_studies, groups, state_of, user_overrides
 from runner.config.compose.overrides import force, prepare
 from runner.config.compose.shortcuts import KeptRepository, kept_files, take_shortcuts
 from runner.config.compose.sources import VERSION_BASE, checked_sources
@@ -104,7 +104,7 @@ class Composer:
     def _of_options(self, options: Sequence[Override], root: str, mode: RunMode) -> DictConfig:
         # The last option of a group counts. The order of the groups has no effect.
         lines = tuple(str(each.input_line) for each in sorted(options, key=lambda each: each.key_or_group))
-        studies = [studies_dir() / name / "experiment" for name in studies_with("experiment")]
+        studies = [folder / group for group in STUDY_GROUPS for folder in built_in_studies(group)]
         files = state_of((conf_dir(), *studies, *self.config_dirs), _MOST)
         load = _load_options if files is not None else _load_options.__wrapped__
         others = files, in_use()

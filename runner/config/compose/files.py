@@ -9,7 +9,7 @@ meaning on another machine.
 import os
 import re
 from collections.abc import Iterable, Iterator, Mapping, Sequence
-from functools import lru_cache
+from functools import cache, lru_cache
 from itertools import islice
 from pathlib import Path
 
@@ -45,8 +45,7 @@ def group_options(group: str, config_dirs: Sequence[Path] = ()) -> dict[str, str
         function the first line of its docstring.
     """
     found: dict[str, str] = {}
-    studies = [studies_dir() / name for name in studies_with(_GROUP)] if group == _GROUP else []
-    for folder in (conf_dir(), *studies, *config_dirs):
+    for folder in (conf_dir(), *built_in_studies(group), *config_dirs):
         files = described_files(folder / group)
         found |= {option_in(folder, group, name): description for name, description in files.items()}
     if group == "controller" and functions_in_use(group):
@@ -56,6 +55,12 @@ def group_options(group: str, config_dirs: Sequence[Path] = ()) -> dict[str, str
             kind: (module.__doc__ or "").partition("\n")[0] for kind, module in CONTROLLERS.of_functions().items()
         }
     return dict(sorted(found.items()))
+
+
+@cache
+def built_in_studies(group: str) -> Sequence[Path]:
+    """Return the folders of the built-in studies whose options of a group are built-in: experiments and controllers."""
+    return [studies_dir() / name for name in studies_with(group)] if group in STUDY_GROUPS else []
 
 
 def state_of(folders: Iterable[Path], most: int) -> tuple[tuple[str, int, int], ...] | None:
@@ -102,19 +107,22 @@ def _first_comment(path: Path) -> str:
 
 
 _GROUP = "experiment"
+STUDY_GROUPS = (_GROUP, "controller")
+"""Groups in which a built-in study adds options for all; its robots are its own."""
 
 
 def place_in(folder: Path, config_path: str) -> Path:
     """Return the path of a config in a folder; that of the experiment NAME/x is experiment/x in the study NAME.
 
-    The built-in studies belong to conf/.
+    The built-in studies belong to conf/; the options of their other groups have names of no study.
     """
     group, _, name = config_path.partition("/")
     study, _, rest = name.partition("/")
     home = studies_dir() / study if folder == conf_dir() and study else folder
     if group == _GROUP and study and option_in(home, group, rest) == name:
         return home / group / rest
-    return folder / config_path
+    others = built_in_studies(group) if folder == conf_dir() and group != _GROUP and name else ()
+    return next((path for own in others if (path := own / config_path).is_file()), folder / config_path)
 
 
 def option_in(folder: Path, group: str, name: str) -> str:

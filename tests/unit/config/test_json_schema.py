@@ -7,10 +7,11 @@ import yaml
 
 from runner.base.errors import RunnerError
 from runner.base.paths import conf_dir
+from runner.config.compose.files import group_options, place_in
 from runner.config.groups import GROUPS
 from runner.config.json_schema import json_schema
 
-FILES = [path for group in GROUPS for path in sorted((conf_dir() / group).glob("*.yaml"))]
+FILES = [place_in(conf_dir(), f"{group}/{name}.yaml") for group in GROUPS for name in group_options(group)]
 NEEDS = {"bullet": pytest.mark.bullet}  # the schema names the plants that are installed
 
 
