@@ -12,10 +12,10 @@ from pathlib import Path
 import numpy as np
 
 from runner.base.trace import Trace
+from runner.caveats.monitor import Watch, look_together
+from runner.caveats.setting import setting_of, signals_of
 from runner.config.compose.compose import compose
 from runner.config.validation import validate
-from runner.metrics.caveats.monitor import Watch, look_together
-from runner.metrics.caveats.setting import setting_of, signals_of
 from runner.metrics.summary import measure
 from runner.plugins.metric_units import units_of
 from runner.sensing.encoders import encoder_errors

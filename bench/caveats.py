@@ -7,10 +7,10 @@ only ever slows one.
 import time
 from collections.abc import Callable
 
+from runner.caveats.monitor import Watch
+from runner.caveats.setting import setting_of, signals_of
 from runner.config.compose.compose import compose
 from runner.config.validation import validate
-from runner.metrics.caveats.monitor import Watch
-from runner.metrics.caveats.setting import setting_of, signals_of
 from runner.metrics.summary import evaluate
 from runner.simulation.assembly import assemble, metric_context
 from runner.simulation.loop import simulate

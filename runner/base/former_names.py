@@ -1,4 +1,4 @@
-"""Former names of keys, options, commands and presets."""
+"""Former names of keys, options, commands, presets and modules."""
 
 # Version 1.0 removes this module, its tests and its imports.
 
@@ -60,6 +60,30 @@ OPTIONS: dict[str, tuple[str, ...]] = {
     "--write": ("--output",),
 }
 """Present spellings of each former option; a command has one of them."""
+
+MODULES: dict[str, str] = {
+    "runner.audit": "runner.papers.audit",
+    "runner.base.expressions": "runner.papers.expressions",
+    "runner.cli.audit": "runner.papers.commands.audit",
+    "runner.cli.benchmark": "runner.papers.commands.benchmark",
+    "runner.cli.reproduce": "runner.papers.commands.reproduce",
+    "runner.cli.study": "runner.papers.commands.study",
+    "runner.metrics.caveats": "runner.caveats",
+    "runner.reporting.audit.forms": "runner.papers.reporting.audit_forms",
+    "runner.reporting.audit.report": "runner.papers.reporting.audit_report",
+    "runner.reporting.equation": "runner.papers.reporting.equation",
+    "runner.reporting.formulas": "runner.reporting.mathml",
+    "runner.reporting.published_claims": "runner.papers.reporting.published_claims",
+    "runner.studies": "runner.papers.studies",
+    "runner.study": "runner.papers.study",
+}
+"""Present name of each former module or package."""
+
+
+def explain_module(name: str) -> str:
+    """Return a sentence with the present name of a former module; empty for any other name."""
+    former = next((each for each in MODULES if name == each or name.startswith(f"{each}.")), None)
+    return f"{former} is now called {MODULES[former]}." if former else ""
 
 
 def explain_key(key: str) -> str:

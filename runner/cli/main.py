@@ -236,9 +236,8 @@ def _run_overrides(words: Sequence[str]) -> int:
         given = "".join(words[1:3]) if words[1] == "=" else words[1]
         raise RunnerError(f"an override has no spaces around its '=': `runner {shlex.join([first + given])}`")
     if first not in OVERRIDES and _may_be_command(first):
-        raise RunnerError(
-            f"{unknown('command', first, commands.names())} A run starts with overrides such as robot=macro."
-        )
+        known = (*commands.names(), *commands.installed())
+        raise RunnerError(f"{unknown('command', first, known)} A run starts with overrides such as robot=macro.")
     if {"-h", "--help"} & {*words}:
         build_parser(["run"]).parse_args(["run", "--help"])
     from runner.cli.run import simulate

@@ -329,7 +329,7 @@ def _print_spec(run: "Run") -> None:
 
 def _print_caveats(run: "Run", thresholds: Any) -> None:
     """Print the caveats of a run, and the thresholds that differ from those of the command's config."""
-    from runner.metrics.caveats.versions import changes_since
+    from runner.caveats.versions import changes_since
 
     for caveat in run.caveats:
         print(one_line(f"runner: caveat: {caveat['rule']}: {caveat['text']}"), file=sys.stderr)

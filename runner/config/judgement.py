@@ -129,7 +129,7 @@ THRESHOLDS: Mapping[str, tuple[str, Any, str]] = {
     ),
 }
 
-"""Key, type and meaning of the threshold of each caveat rule; the rules are in runner/metrics/caveats."""
+"""Key, type and meaning of the threshold of each caveat rule; the rules are in runner/caveats."""
 
 
 def _make_threshold(rule: str) -> Any:

@@ -19,6 +19,7 @@ from types import ModuleType
 from typing import TYPE_CHECKING
 
 from runner.base.errors import ConfigError, RunnerError, describe_part_error, nearest, unknown
+from runner.base.former_names import explain_module
 
 if TYPE_CHECKING:
     from importlib.metadata import EntryPoint
@@ -126,8 +127,9 @@ def load(group: str, name: str, module: str) -> ModuleType:
     except Exception as error:
         if module.startswith("runner."):
             raise
+        renamed = explain_module(error.name or "") if isinstance(error, ModuleNotFoundError) else ""
         raise ConfigError(
-            f"{group} {name}: module {module} cannot be imported: {describe_part_error(error)}"
+            f"{group} {name}: module {module} cannot be imported: {renamed or describe_part_error(error)}"
         ) from error
 
 

@@ -12,8 +12,8 @@ from runner.base.dotted_keys import dotted, leaves
 from runner.base.errors import ConfigError, RunnerError
 from runner.base.machine import read_machine
 from runner.base.quantities import above_rounding, number, quantity, with_powers
+from runner.caveats.versions import changes_since
 from runner.config.compose.compose import compose
-from runner.metrics.caveats.versions import changes_since
 from runner.metrics.rounding import SENSITIVE, STEP
 from runner.reporting.document import Block, Code, Cover, Document, Notice, Provenance, Section, Table, Text
 from runner.reporting.figures import cover, desired_motion, last_moments, playback, torque_and_error, until_failure

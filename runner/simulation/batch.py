@@ -18,10 +18,10 @@ from runner.base.arrays import FloatArray
 from runner.base.cache import Memory
 from runner.base.ticks import add_ticks
 from runner.base.trace import Failure, Trace
+from runner.caveats.monitor import Watch, look_together
+from runner.caveats.setting import setting_of, signals_of
 from runner.config.parsing import require
 from runner.config.run import RunConfig
-from runner.metrics.caveats.monitor import Watch, look_together
-from runner.metrics.caveats.setting import setting_of, signals_of
 from runner.metrics.family import MetricContext
 from runner.metrics.summary import measure
 from runner.plugins.discovery import added_parts

@@ -12,11 +12,11 @@ import numpy as np
 from runner.base.arrays import FloatArray
 from runner.base.errors import SimulationError
 from runner.base.trace import Failure, Trace
+from runner.caveats.monitor import Watch
+from runner.caveats.plant_error import PlantStep
+from runner.caveats.rule import Found
+from runner.caveats.setting import signals_of
 from runner.config.run import RunConfig
-from runner.metrics.caveats.monitor import Watch
-from runner.metrics.caveats.plant_error import PlantStep
-from runner.metrics.caveats.rule import Found
-from runner.metrics.caveats.setting import signals_of
 from runner.metrics.family import MetricContext
 from runner.metrics.plant_error import PlantError
 from runner.metrics.rounding import RoundingGrowth

@@ -18,13 +18,13 @@ import numpy as np
 from runner.base.arrays import FloatArray
 from runner.base.errors import ConfigError
 from runner.base.trace import Trace
+from runner.caveats.monitor import Watch
+from runner.caveats.setting import setting_of
 from runner.config.limits import TICKS_AT_ONCE
 from runner.config.parsing import require
 from runner.config.run import RunConfig
 from runner.config.validation import validate
 from runner.metrics import rounding
-from runner.metrics.caveats.monitor import Watch
-from runner.metrics.caveats.setting import setting_of
 from runner.metrics.plant_error import COMPARED, PlantError, compare, on_runge_kutta, reason_not_comparable
 from runner.metrics.rounding import RoundingGrowth, move_start
 from runner.plugins.discovery import has_users_parts

@@ -13,7 +13,7 @@ import yaml
 
 from runner.base.errors import StoreError
 from runner.base.trace import Trace
-from runner.metrics.caveats.rule import Found
+from runner.caveats.rule import Found
 from runner.simulation.results import RunResult
 from runner.statistics.spec import bounds_of, judge
 from runner.store.atomic import refuse_links, write_atomically

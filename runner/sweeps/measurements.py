@@ -88,7 +88,7 @@ class Measurements:
     @cached_property
     def caveat_changes(self) -> Mapping[str, int]:
         """Differences between the stored caveat rules and the current ones, each with the number of cells."""
-        from runner.metrics.caveats.versions import changes_since  # imports all rules
+        from runner.caveats.versions import changes_since  # imports all rules
 
         found: Counter[str] = Counter()
         for rules, count in self.caveat_rules:

@@ -4,8 +4,8 @@ from dataclasses import replace
 
 import numpy as np
 
-from runner.metrics.caveats.monitor import Watch
-from runner.metrics.caveats.setting import Signals, setting_of
+from runner.caveats.monitor import Watch
+from runner.caveats.setting import Signals, setting_of
 
 
 def signals(q=None, tau=None, tip=None, desired=None, limits=(10.0, 10.0, 10.0), dq=None):

@@ -9,7 +9,7 @@ meaning on another machine.
 import os
 import re
 from collections.abc import Iterable, Iterator, Mapping, Sequence
-from functools import cache, lru_cache
+from functools import lru_cache
 from itertools import islice
 from pathlib import Path
 
@@ -57,7 +57,7 @@ def group_options(group: str, config_dirs: Sequence[Path] = ()) -> dict[str, str
     return dict(sorted(found.items()))
 
 
-@cache
+@lru_cache(maxsize=8)
 def built_in_studies(group: str) -> Sequence[Path]:
     """Return the folders of the built-in studies whose options of a group are built-in: experiments and controllers."""
     return [studies_dir() / name for name in studies_with(group)] if group in STUDY_GROUPS else []

@@ -1,5 +1,6 @@
 """Commands of guests: those of an installed package, and this package without runner/papers."""
 
+import importlib.util
 import os
 import shutil
 import subprocess
@@ -8,6 +9,7 @@ from pathlib import Path
 
 import pytest
 
+from runner.base.former_names import MODULES
 from runner.cli import commands
 
 CHECKOUT = Path(__file__).parents[3]
@@ -116,3 +118,20 @@ def test_the_rest_works_without_papers(tmp_path):
     assert "Papers" not in ending.stdout
     assert "three_joint" not in ending.stdout
     assert "unknown command 'reproduce'" in ending.stderr
+
+
+@pytest.mark.usefixtures("greeter")
+def test_a_command_with_a_former_import_is_told_the_present_name(cli, tmp_path):
+    (tmp_path / "site" / "greeter.py").write_text(
+        '"""Greet a person."""\n\nfrom runner.study.names import study_names\n'
+    )
+    ending = cli("greet", "Ada")
+    assert ending.code == 2
+    assert "cannot be imported: runner.study is now called runner.papers.study." in ending.err
+
+
+@pytest.mark.parametrize(("former", "present"), MODULES.items())
+def test_each_present_module_exists(former, present):
+    assert importlib.util.find_spec(present) is not None
+    with pytest.raises(ModuleNotFoundError):
+        importlib.import_module(former)

@@ -6,7 +6,7 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 
-from runner.metrics.caveats.rule import Caveat, Found
+from runner.caveats.rule import Caveat, Found
 from runner.metrics.summary import summarize_arrays
 from runner.plugins.metric_units import unit_of
 from runner.store import Finished, Outcome

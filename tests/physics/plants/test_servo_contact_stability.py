@@ -6,13 +6,13 @@ import numpy as np
 import pytest
 from support.arms import checked
 
+from runner.caveats.contact_stability import servo_contact
+from runner.caveats.monitor import Watch
+from runner.caveats.setting import setting_of
 from runner.config.compose.compose import compose
 from runner.config.validation import validate
 from runner.controllers.force.admittance_filter import Admittance, discretise
 from runner.controllers.stability import wall_radius
-from runner.metrics.caveats.contact_stability import servo_contact
-from runner.metrics.caveats.monitor import Watch
-from runner.metrics.caveats.setting import setting_of
 from runner.plants.servo import ServoLaw
 from runner.plants.servo_contact_stability import contact_map, contact_radius, stiffest_servo_wall
 from runner.simulation.assembly import assemble

@@ -9,6 +9,7 @@ from runner.base.paths import package_dir
 TESTS = Path(__file__).resolve().parents[2]
 PACKAGES = [
     "calibration",
+    "caveats",
     "config",
     "controllers",
     "environments",
@@ -57,9 +58,9 @@ SHARED = {
     "environments/push": "physics/environments/test_environments.py",
     "environments/wall": "physics/environments/test_environments.py",
     "statistics/conclusion": "unit/statistics/test_scope.py",
-    "metrics/caveats/plant_error": "physics/metrics/test_plant_error_caveat.py",
-    "metrics/caveats/versions": "physics/metrics/test_monitor.py",
-    "metrics/caveats/setting": "physics/metrics/test_monitor.py",
+    "caveats/plant_error": "physics/caveats/test_plant_error_caveat.py",
+    "caveats/versions": "physics/caveats/test_monitor.py",
+    "caveats/setting": "physics/caveats/test_monitor.py",
     "metrics/family": "contract/plugins/test_metrics.py",
     "plants/compiled_friction": "physics/symbolic/test_tick.py",
     "plants/flexible_config": "physics/plants/test_flexible_joints.py",

@@ -7,10 +7,10 @@ from typing import Any
 
 import numpy as np
 
+from runner.caveats.contact_stability import servo_contact
 from runner.config.composed import Composed
 from runner.config.validation import validate
 from runner.controllers.stability import stiffest_wall
-from runner.metrics.caveats.contact_stability import servo_contact
 from runner.papers.studies.meca500.figures import bounces, once
 from runner.papers.studies.meca500.plan import law_in
 from runner.papers.study.results import Runs

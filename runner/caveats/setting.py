@@ -12,10 +12,10 @@ from runner.base.arrays import FloatArray
 from runner.base.trace import Trace
 
 if TYPE_CHECKING:
+    from runner.caveats.time_constants import TimeConstant
     from runner.config.robot import RobotConfig
     from runner.config.run import RunConfig
     from runner.controllers.stability import VelocityLoop
-    from runner.metrics.caveats.time_constants import TimeConstant
     from runner.plants.servo_contact_stability import ServoContact
     from runner.robots.mismatch import MismatchConfig
     from runner.robots.model import RobotModel
@@ -86,9 +86,9 @@ def setting_of(config: "RunConfig", q_start: FloatArray | None = None) -> Settin
         q_start: Joint positions at the start, shape (nq,), in rad. None leaves out contact and otherwise uses the home
             configuration.
     """
+    from runner.caveats.contact_stability import force_contact, servo_contact
+    from runner.caveats.time_constants import slowest_part
     from runner.controllers.stability import velocity_loop
-    from runner.metrics.caveats.contact_stability import force_contact, servo_contact
-    from runner.metrics.caveats.time_constants import slowest_part
 
     model = config.arm.model
     units, position_limits, mass = _of_model(model)

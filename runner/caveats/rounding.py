@@ -1,6 +1,6 @@
 """Caveat on the growth of rounding errors."""
 
-from runner.metrics.caveats.rule import Caveat, percent
+from runner.caveats.rule import Caveat, percent
 from runner.metrics.rounding import RoundingGrowth
 
 NAME = "rounding_grows"

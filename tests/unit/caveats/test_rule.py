@@ -4,7 +4,7 @@ from types import SimpleNamespace
 
 import pytest
 
-from runner.metrics.caveats.rule import Caveat, Found, called, percent
+from runner.caveats.rule import Caveat, Found, called, percent
 
 
 @pytest.mark.parametrize(("share", "text"), [(0.125, "12.5 %"), (1.0, "100 %"), (0.0, "0 %"), (1 / 3, "33.3 %")])

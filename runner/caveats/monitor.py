@@ -10,14 +10,14 @@ import numpy as np
 
 from runner.base.arrays import FloatArray
 from runner.base.cache import Memory
+from runner.caveats import plant_error, rounding
+from runner.caveats.plant_error import PlantStep
+from runner.caveats.rule import Caveat, Found, TraceRule
+from runner.caveats.setting import Setting, Signals
+from runner.caveats.setting_rules import SETTING_RULES
+from runner.caveats.trace_rules import TRACE_RULES
+from runner.caveats.versions import rules_digest
 from runner.config.judgement import THRESHOLDS, CaveatsConfig
-from runner.metrics.caveats import plant_error, rounding
-from runner.metrics.caveats.plant_error import PlantStep
-from runner.metrics.caveats.rule import Caveat, Found, TraceRule
-from runner.metrics.caveats.setting import Setting, Signals
-from runner.metrics.caveats.setting_rules import SETTING_RULES
-from runner.metrics.caveats.trace_rules import TRACE_RULES
-from runner.metrics.caveats.versions import rules_digest
 from runner.metrics.plant_error import PlantError
 from runner.metrics.rounding import RoundingGrowth
 

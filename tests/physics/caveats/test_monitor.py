@@ -10,13 +10,13 @@ import pytest
 from support.caveat_runs import signals, stacked
 from support.engines import ASKED
 
+from runner.caveats import plant_error, rounding
+from runner.caveats.monitor import Watch, look_together
+from runner.caveats.setting import Signals, setting_of, signals_of
+from runner.caveats.setting_rules import SETTING_RULES
+from runner.caveats.trace_rules import TRACE_RULES
+from runner.caveats.versions import changes_since, our_thresholds, rules_digest
 from runner.config.judgement import THRESHOLDS, CaveatsConfig
-from runner.metrics.caveats import plant_error, rounding
-from runner.metrics.caveats.monitor import Watch, look_together
-from runner.metrics.caveats.setting import Signals, setting_of, signals_of
-from runner.metrics.caveats.setting_rules import SETTING_RULES
-from runner.metrics.caveats.trace_rules import TRACE_RULES
-from runner.metrics.caveats.versions import changes_since, our_thresholds, rules_digest
 from runner.store import run_hash
 
 ROBOTS = ("macro", "mini", "combined", "macro_mini_mini", "xarm7", "xarm7_mini", "meca500", "meca500_r4")
@@ -183,7 +183,7 @@ def test_other_thresholds_leave_a_run_as_it_is_and_are_told(cli):
 
 
 def test_a_store_is_read_without_rigid_body_models():
-    light = "import sys, runner.store, runner.metrics.caveats; sys.exit('pinocchio' in sys.modules)"
+    light = "import sys, runner.store, runner.caveats; sys.exit('pinocchio' in sys.modules)"
     assert subprocess.run([sys.executable, "-c", light], check=False).returncode == 0
 
 

@@ -2,7 +2,7 @@
 
 from typing import NamedTuple
 
-from runner.metrics.caveats.rule import Caveat, percent
+from runner.caveats.rule import Caveat, percent
 from runner.metrics.plant_error import PARTED, PLANT, PlantError, sufficient_step
 from runner.plugins.metric_units import unit_of
 

@@ -5,8 +5,8 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from runner.metrics.caveats.rule import SettingRule
-from runner.metrics.caveats.setting import Setting
+from runner.caveats.rule import SettingRule
+from runner.caveats.setting import Setting
 
 if TYPE_CHECKING:
     from runner.robots.mismatch import MismatchConfig

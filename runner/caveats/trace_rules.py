@@ -4,8 +4,8 @@ import numpy as np
 
 from runner.base.arrays import FloatArray
 from runner.base.trace import by_rows
-from runner.metrics.caveats.rule import TraceRule, called, percent
-from runner.metrics.caveats.setting import IDEAL, Setting, Signals
+from runner.caveats.rule import TraceRule, called, percent
+from runner.caveats.setting import IDEAL, Setting, Signals
 
 _AT_LIMIT = 1.0 - 1e-12  # as in the metric saturation_fraction
 _SIZED = 60  # most rows, including the last one, used for the size of a motion

@@ -6,9 +6,9 @@ import numpy as np
 import pytest
 
 from runner.base.trace import Failure
+from runner.caveats.rounding import caveat_of
 from runner.config.compose.compose import compose
 from runner.config.validation import validate
-from runner.metrics.caveats.rounding import caveat_of
 from runner.metrics.rounding import SENSITIVE, STEP, RoundingGrowth, compare, move_start, relative_change
 from runner.simulation.run import simulate_run
 

@@ -3,7 +3,7 @@
 import pytest
 
 from runner.base.engines import has_pybullet
-from runner.metrics.caveats.plant_error import PlantStep, caveat_of
+from runner.caveats.plant_error import PlantStep, caveat_of
 from runner.metrics.plant_error import ErrorEstimate, PlantError
 from runner.sweeps.job import run
 

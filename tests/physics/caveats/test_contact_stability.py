@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from runner.metrics.caveats.contact_stability import servo_contact
+from runner.caveats.contact_stability import servo_contact
 
 PRESSED = "experiment=meca500/wall", "plant=rk4"
 FOLLOWED = "robot=meca500", "controller=differential_inverse_kinematics", "duration=0.1"

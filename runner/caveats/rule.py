@@ -5,7 +5,7 @@ from dataclasses import asdict, dataclass
 from typing import Any
 
 from runner.base.arrays import FloatArray
-from runner.metrics.caveats.setting import Setting, Signals
+from runner.caveats.setting import Setting, Signals
 
 
 @dataclass(frozen=True)

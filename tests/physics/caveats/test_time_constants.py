@@ -8,10 +8,10 @@ import numpy as np
 import pytest
 from scipy.linalg import expm
 
+from runner.caveats.time_constants import slowest_part
 from runner.controllers import CONTROLLERS
 from runner.controllers.joint_space.computed_torque import ComputedTorqueConfig
 from runner.controllers.torque_law import PinocchioArm
-from runner.metrics.caveats.time_constants import slowest_part
 
 REST = ("robot=macro", "trajectory=joint_quintic", "trajectory.goal_configuration=${robot.home}",
         "plant=rk4", "controller.period=0.001", "plant.step=0.001")  # fmt: skip

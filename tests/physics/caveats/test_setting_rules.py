@@ -7,10 +7,10 @@ from support.caveat_runs import found, signals
 from support.engines import ASKED
 from support.mjcf_arms import CHAIN, written
 
+from runner.caveats.monitor import Watch
+from runner.caveats.setting import setting_of
 from runner.config.compose.compose import compose
 from runner.config.validation import validate
-from runner.metrics.caveats.monitor import Watch
-from runner.metrics.caveats.setting import setting_of
 from runner.robots.mjcf import read_mjcf
 
 
