@@ -12,11 +12,11 @@ from textwrap import dedent
 from types import CodeType, FunctionType, ModuleType
 from typing import Any
 
+from runner.base import cache
+from runner.base.atomic import write_atomically
 from runner.base.errors import ConfigError
 from runner.plugins.discovery import use_plugins
 from runner.plugins.guard import place
-from runner.store.atomic import write_atomically
-from runner.symbolic import cache
 
 _KEY = "controller"
 _FUTURE = "from __future__ import annotations"  # so that they need no imports

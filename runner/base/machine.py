@@ -9,6 +9,7 @@ import importlib
 import math
 import os
 import platform
+import time
 from collections import Counter
 from collections.abc import Iterable, Mapping
 from dataclasses import asdict, dataclass, fields
@@ -70,6 +71,11 @@ _NAMES = tuple(field.name for field in fields(Machine))
 
 
 @cache
+def today() -> str:
+    """Return the date as stored, such as "2026-11-24", in UTC."""
+    return time.strftime("%Y-%m-%d", time.gmtime())
+
+
 def this_machine() -> Machine:
     """Return the machine of this process."""
     system, processor = f"{platform.system()} {platform.machine()}", platform.machine()

@@ -9,7 +9,7 @@ from operator import attrgetter
 import numpy as np
 
 from runner.base.arrays import FloatArray
-from runner.base.cache import Memory
+from runner.base.memory import Memory
 from runner.caveats import plant_error, rounding
 from runner.caveats.plant_error import PlantStep
 from runner.caveats.rule import Caveat, Found, TraceRule

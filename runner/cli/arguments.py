@@ -96,7 +96,7 @@ def put(content: str | bytes, output: Path | None) -> None:
     if output is None:
         sys.stdout.write(content.decode())
     else:
-        from runner.store.atomic import write_atomically
+        from runner.base.atomic import write_atomically
 
         write_atomically(output, content)
         print(output)

@@ -8,10 +8,10 @@ import sys
 from argparse import Namespace
 from pathlib import Path
 
+from runner.base.atomic import write_atomically
 from runner.base.errors import RunnerError
 from runner.base.paths import examples_dir
 from runner.cli.arguments import Parser
-from runner.store.atomic import write_atomically
 
 
 def add_arguments(parser: Parser) -> None:

@@ -86,7 +86,7 @@ def _width(text: str | None, chosen: str) -> float | None:
 
 
 def _whole(folder: Path, measurements: "Measurements") -> int:
-    from runner.store.atomic import refuse_links
+    from runner.base.atomic import refuse_links
     from runner.store.kinds import KINDS
     from runner.sweeps.differing import in_words
     from runner.sweeps.table import write_table

@@ -8,6 +8,7 @@ from pathlib import Path
 
 import numpy as np
 
+from runner.base.cache import read_answer, write_answer
 from runner.base.engines import has_pybullet, installed_versions
 from runner.base.errors import ConfigError
 from runner.base.paths import robots_dir
@@ -17,7 +18,6 @@ from runner.plants.agreement import ENGINES, compare
 from runner.robots.description import mjcf_of, read_urdf
 from runner.robots.inertials import set_file
 from runner.robots.model import RobotModel
-from runner.symbolic.cache import read_answer, write_answer
 
 _SAMPLES = 3
 _REGULAR = 1e-9  # smallest eigenvalue of a mass matrix with a diagonal of 1

@@ -6,8 +6,8 @@ from typing import Any, TypeVar
 
 from pydantic import ValidationError
 
-from runner.base.cache import Memory
 from runner.base.errors import ConfigError
+from runner.base.memory import Memory
 from runner.base.sanitize import quoted
 from runner.config.compose.messages import describe
 from runner.config.robot import OneArmConfig, RobotConfig, StagedRobotConfig

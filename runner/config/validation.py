@@ -5,8 +5,8 @@ from dataclasses import fields
 
 import numpy as np
 
-from runner.base.cache import Memory
 from runner.base.errors import ConfigError
+from runner.base.memory import Memory
 from runner.base.sanitize import few
 from runner.config.arms import RobotOutline, build_loaded, build_robot, read_outline
 from runner.config.composed import Composed

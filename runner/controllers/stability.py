@@ -13,8 +13,8 @@ from typing import NamedTuple
 import numpy as np
 
 from runner.base.arrays import FloatArray
-from runner.base.cache import Memory
 from runner.base.errors import ConfigError
+from runner.base.memory import Memory
 from runner.controllers.controller import Loop
 from runner.controllers.force.admittance_filter import AXES, Admittance, discretise, held_map
 from runner.robots.robot import Robot

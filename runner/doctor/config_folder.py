@@ -6,11 +6,11 @@ from pathlib import Path
 import yaml
 
 from runner.base.arrays import FloatArray
+from runner.base.atomic import write_atomically
 from runner.base.errors import RunnerError, StoreError
 from runner.config.json_schema import json_schema
 from runner.doctor.examination import Examination
 from runner.robots.joint_dynamics import FileDynamics
-from runner.store.atomic import write_atomically
 
 _ROBOT = """\
 # @package _global_

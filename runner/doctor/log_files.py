@@ -5,10 +5,10 @@ from pathlib import Path
 
 import yaml
 
+from runner.base.atomic import write_atomically
 from runner.base.errors import RunnerError, StoreError
 from runner.base.sanitize import one_line
 from runner.doctor.log import LogExamination, Meaning
-from runner.store.atomic import write_atomically
 
 MAP, MOTION = "columns.yaml", "motion.csv"
 

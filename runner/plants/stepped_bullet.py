@@ -10,6 +10,7 @@ import numpy as np
 
 from runner.base import engines
 from runner.base.arrays import FloatArray
+from runner.base.cache import read_answer, write_answer
 from runner.base.errors import SimulationError
 from runner.plants.agreement import has_bits_of_bullet
 from runner.plants.bullet_links import read_arm
@@ -20,7 +21,6 @@ from runner.robots.description import find_urdf, read_urdf
 from runner.robots.model import RobotModel
 from runner.robots.mounting import TOOL_MOUNT
 from runner.symbolic.bullet_step import VERSION, BulletArm
-from runner.symbolic.cache import read_answer, write_answer
 from runner.symbolic.engine import MOST_JOINTS, evaluator, processor
 from runner.symbolic.program import source_digest
 

@@ -18,6 +18,7 @@ import numpy as np
 import typst
 
 from runner.base import progress
+from runner.base.atomic import write_atomically
 from runner.base.errors import RunnerError
 from runner.base.paths import templates_dir
 from runner.base.quantities import number, unit_text
@@ -32,7 +33,6 @@ from runner.reporting.outline import Places
 from runner.reporting.playback import playback_spec
 from runner.reporting.table import Table, numbers
 from runner.reporting.templating import Code, html_environment, typst_environment
-from runner.store.atomic import write_atomically
 
 SHOWN = 6
 """Metrics in the table; the details of a run have all of them."""

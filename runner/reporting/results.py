@@ -7,6 +7,7 @@ from datetime import datetime
 from pathlib import Path
 
 from runner.base import progress
+from runner.base.atomic import write_atomically
 from runner.base.errors import RunnerError, StoreError
 from runner.base.quantities import with_powers
 from runner.base.sanitize import one_line
@@ -20,7 +21,6 @@ from runner.reporting.sweep.subject import choose, shorten
 from runner.reporting.sweep.tuning import summary_of_tuning
 from runner.reporting.templating import html_environment
 from runner.store import Calibration, Run, Sweep, open_stored
-from runner.store.atomic import write_atomically
 from runner.store.kinds import KINDS
 from runner.store.listing import Entry, list_entries, runs_of_sweeps
 from runner.store.seal import SchemaError

@@ -15,7 +15,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from runner.base.arrays import FloatArray
-from runner.base.cache import Memory
+from runner.base.memory import Memory
 from runner.base.ticks import add_ticks
 from runner.base.trace import Failure, Trace
 from runner.caveats.monitor import Watch, look_together

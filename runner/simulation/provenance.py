@@ -10,11 +10,10 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from runner.base.engines import installed_versions
-from runner.base.machine import this_machine
+from runner.base.machine import this_machine, today
 from runner.base.paths import package_dir
 from runner.config.dependent_keys import idle_keys
 from runner.plugins import discovery
-from runner.statistics.spec import today
 from runner.symbolic.engine import evaluator
 
 if TYPE_CHECKING:

@@ -1,6 +1,5 @@
 """Number of a run's repetitions within each bound of a spec, verdicts, and the history of bounds."""
 
-import time
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any, Literal
@@ -17,11 +16,6 @@ if TYPE_CHECKING:
 History = Sequence[Sequence[Any]]
 """Dates on which bounds or claims were first set, each with its value; the first stood when the result was made."""
 Histories = Mapping[str, History]
-
-
-def today() -> str:
-    """Return the date as stored, such as "2026-11-24", in UTC."""
-    return time.strftime("%Y-%m-%d", time.gmtime())
 
 
 def ends_of(bound: Bound | None) -> list[float | None]:

@@ -18,6 +18,7 @@ from omegaconf import OmegaConf
 from omegaconf.errors import OmegaConfBaseException
 from pydantic import AfterValidator, Field, NonNegativeFloat, ValidationError
 
+from runner.base.atomic import write_atomically
 from runner.base.bounded_yaml import Bounds, YamlError, read_yaml
 from runner.base.dotted_keys import dotted, leaves
 from runner.base.errors import RunnerError, StoreError, nearest, unknown
@@ -29,7 +30,6 @@ from runner.config.judgement import Bound
 from runner.plugins.metric_units import unit_of, units
 from runner.schema.model import StrictModel
 from runner.store import Run
-from runner.store.atomic import write_atomically
 from runner.store.cells import FORMER, FormerBaseline, SweepBaseline
 from runner.store.record import Metric
 

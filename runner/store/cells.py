@@ -18,12 +18,12 @@ from typing import Annotated, Any
 import yaml
 from pydantic import AfterValidator, Field, NonNegativeFloat
 
+from runner.base.atomic import write_atomically
 from runner.base.errors import StoreError
 from runner.base.machine import ROUNDING, Machine, equal_up_to_rounding, parts_apart, read_machine
 from runner.base.sanitize import escaped
 from runner.schema.model import StrictModel
 from runner.store import Run, Sweep
-from runner.store.atomic import write_atomically
 
 SCHEMA = 2
 FORMER = 1

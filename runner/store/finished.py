@@ -11,8 +11,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from runner.base.arrays import FloatArray
+from runner.base.atomic import refuse_links, write_atomically
 from runner.base.errors import StoreError
-from runner.store.atomic import refuse_links, write_atomically
 from runner.store.names import Names, best_of_each, look_up
 from runner.store.run import Run, open_run
 from runner.store.seal import DamagedError, check_job, read_json, sealed_json

@@ -6,8 +6,8 @@ from collections.abc import Iterator, Mapping, Sequence
 from functools import lru_cache
 from typing import Any
 
-from runner.base.cache import Memory
 from runner.base.engines import installed_versions
+from runner.base.memory import Memory
 from runner.plants.stepped_bullet import bullet_versions
 from runner.plugins.discovery import GROUPS, added_parts, source_files
 from runner.store.names import Names

@@ -61,7 +61,7 @@ def note(folder: Path) -> None:
 
     An outputs folder that cannot be written to causes a message, not an error.
     """
-    from runner.store.atomic import refuse_links, write_atomically  # not needed to read a note
+    from runner.base.atomic import refuse_links, write_atomically  # not needed to read a note
 
     place = folder.resolve()
     outputs, kind = place.parent.parent, place.parent.name
@@ -117,7 +117,7 @@ def report_place(outputs: Path, name: str) -> Path:
     Raises:
         StoreError: if it is a link, or lies in one.
     """
-    from runner.store.atomic import refuse_links  # not needed to find a result
+    from runner.base.atomic import refuse_links  # not needed to find a result
 
     folder = outputs / KINDS["report"].folder / name
     refuse_links(outputs, folder)

@@ -14,9 +14,9 @@ from collections.abc import Mapping
 from functools import cache
 from pathlib import Path
 
+from runner.base.cache import read_answer, write_answer
 from runner.base.paths import package_dir
 from runner.store import syntax
-from runner.symbolic.cache import read_answer, write_answer
 
 # Folders and their modules. A module's id follows "="; without "=" it is the module's name.
 _TABLE = """

@@ -16,12 +16,12 @@ from typing import Any
 
 import yaml
 
+from runner.base.atomic import refuse_links, write_atomically
 from runner.base.bounded_json import decode_json
 from runner.base.bounded_yaml import STORED, YamlError, read_yaml
-from runner.base.cache import Memory
 from runner.base.errors import StoreError
 from runner.base.limits import RECORD, RECORD_VALUES, ExcessError
-from runner.store.atomic import refuse_links, write_atomically
+from runner.base.memory import Memory
 
 SCHEMA = 3
 """Schema of every stored file; files of another schema are rejected."""

@@ -20,10 +20,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from runner.base.arrays import FloatArray
+from runner.base.atomic import write_atomically
 from runner.base.bounded_json import decode_json
 from runner.base.limits import ExcessError, open_parquet
 from runner.base.machine import Machine, read_machine
-from runner.store.atomic import write_atomically
 from runner.store.names import Names, Texts
 from runner.store.parquet import encode_parquet, list_column, numbers, plain_column, text_column
 from runner.store.record import find_config_faults, find_faults

@@ -12,8 +12,8 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import NDArray
 
+from runner.base.atomic import refuse_links, write_atomically
 from runner.base.errors import StoreError
-from runner.store.atomic import refuse_links, write_atomically
 from runner.store.axes import Axes, read_axes
 from runner.store.finished import Finished
 from runner.store.kinds import kind_of
@@ -188,7 +188,8 @@ def write_jobs(
 
 def _head(folder: Path, command: str, spec: "Mapping[str, Bound]", date: str = "") -> dict[str, Any]:
     """Return the first entries of the file of a sweep; the history includes the bounds of the file that it replaces."""
-    from runner.statistics.spec import merge_histories, settings, today
+    from runner.base.machine import today
+    from runner.statistics.spec import merge_histories, settings
 
     try:
         known = read_json(folder / _FILE, _REMEDY).get("history", {})

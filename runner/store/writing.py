@@ -11,12 +11,12 @@ from typing import Any
 import numpy as np
 import yaml
 
+from runner.base.atomic import refuse_links, write_atomically
 from runner.base.errors import StoreError
 from runner.base.trace import Trace
 from runner.caveats.rule import Found
 from runner.simulation.results import RunResult
 from runner.statistics.spec import bounds_of, judge
-from runner.store.atomic import refuse_links, write_atomically
 from runner.store.kinds import FILES, KINDS
 from runner.store.parquet import OF_NUMBERS, VALUES_FILE, encode_parquet, plain_column, values_parquet
 from runner.store.run import Run

@@ -15,8 +15,8 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import NDArray
 
-from runner.base.cache import Memory
 from runner.base.dotted_keys import dotted, leaves, split_override
+from runner.base.memory import Memory
 from runner.store.run import Run
 from runner.store.seal import MEND, DamagedError, simulated_part
 

@@ -11,8 +11,8 @@ import numpy as np
 
 from runner import store
 from runner.base import progress
-from runner.base.cache import Memory
 from runner.base.errors import ConfigError
+from runner.base.memory import Memory
 from runner.config.arms import build_robot, read_outline
 from runner.config.composed import Composed
 from runner.config.groups import read_groups

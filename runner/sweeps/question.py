@@ -7,8 +7,8 @@ error, payload, environment, engine and seed are conditions, unless a user asks 
 import contextlib
 from collections.abc import Sequence
 
+from runner.base.atomic import write_atomically
 from runner.base.errors import StoreError
-from runner.store.atomic import write_atomically
 from runner.store.axes import Axis, axes_of
 from runner.store.seal import sealed_json
 from runner.store.sweep import QUESTION, Sweep

@@ -16,6 +16,7 @@ from numpy.typing import NDArray
 
 from runner import store
 from runner.base import progress
+from runner.base.atomic import refuse_links, remove_leftovers
 from runner.base.errors import ConfigError, StoreError, TemporaryError
 from runner.base.sanitize import one_line
 from runner.config.compose.composer import Composer
@@ -25,7 +26,6 @@ from runner.config.dependent_keys import depends, idle_keys
 from runner.config.limits import SweepConfig, check_cpu_time, check_memory_together
 from runner.config.validation import validate
 from runner.plugins.discovery import has_users_parts, in_use
-from runner.store.atomic import refuse_links, remove_leftovers
 from runner.store.finished import FINER
 from runner.store.kinds import note
 from runner.store.names import Names

@@ -7,8 +7,8 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from runner.base.arrays import FloatArray
+from runner.base.atomic import open_atomically
 from runner.base.sanitize import table_cell
-from runner.store.atomic import open_atomically
 from runner.sweeps.measurements import Measurements, medians
 
 if TYPE_CHECKING:

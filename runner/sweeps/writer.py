@@ -7,9 +7,9 @@ from pathlib import Path
 from typing import Literal
 
 from runner import store
+from runner.base.atomic import write_atomically
 from runner.config.limits import SweepConfig
 from runner.simulation.results import RunResult
-from runner.store.atomic import write_atomically
 from runner.store.shards import ShardRow, outcome, write_shard
 from runner.store.writing import make_record
 

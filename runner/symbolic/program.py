@@ -9,9 +9,9 @@ from functools import cache, lru_cache
 
 import numpy as np
 
+from runner.base import cache as kept
 from runner.base.arrays import FloatArray
 from runner.base.paths import package_dir
-from runner.symbolic import cache as kept
 from runner.symbolic.code import GIVEN, PARS, ROWS, SCRATCH, STATE, TABLE, Part, write_program
 from runner.symbolic.engine import Function, evaluator, load, machine_code, processor
 

@@ -7,9 +7,9 @@ from pathlib import Path
 import numpy as np
 import pyarrow
 
+from runner.base.atomic import write_atomically
 from runner.papers.studies.precision import measure
 from runner.store import Run
-from runner.store.atomic import write_atomically
 from runner.store.seal import sealed_json
 
 FIRST, FOURTH, OFF = 0.1, 50.0, 1e-15  # errors by the step: rad/s, rad/s^4; how far both ways of one scheme are apart

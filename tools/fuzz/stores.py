@@ -11,11 +11,11 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from runner import store
+from runner.base.atomic import write_atomically
 from runner.base.errors import StoreError
 from runner.cli.main import dispatch
 from runner.config.compose.composer import Composer
 from runner.metrics.summary import MOST_LISTED
-from runner.store.atomic import write_atomically
 from runner.store.seal import sealed_json
 from runner.store.shards import open_row, read_outcomes, shard_files
 from runner.sweeps.job import calibrate, run

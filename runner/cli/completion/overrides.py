@@ -11,9 +11,9 @@ from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from pathlib import Path, PurePath
 from typing import Any, NamedTuple
 
+from runner.base import cache
 from runner.base.paths import conf_dir, package_dir, robots_dir
 from runner.config.compose.files import group_options, groups, state_of, user_overrides
-from runner.symbolic import cache
 
 _SIGN = re.compile(r"[+~]*")
 _FILE = re.compile(r"^  - (\w+)\s*(?:#.*)?$", re.MULTILINE)  # of a root's defaults: a file with top-level keys

@@ -127,9 +127,9 @@ def _chosen(options: Namespace) -> "list[Study | None]":
 
 def _reproduce(study: "Study | None", options: Namespace) -> "tuple[str, _Reproduced]":
     from runner import store
+    from runner.base.atomic import write_atomically
     from runner.papers.study.tunings import write_gains
     from runner.reporting.render import write_report
-    from runner.store.atomic import write_atomically
 
     name = AUDIT if study is None else study.name
     progress.set_title(name)
@@ -181,9 +181,9 @@ def _reproduce_study(study: "Study", options: Namespace) -> _Reproduced:
 
 def _audit(folder: Path) -> _Reproduced:
     """Check the equations of all studies; write their table, and return the report."""
+    from runner.base.atomic import write_atomically
     from runner.papers.audit.audit import as_csv, audit_all
     from runner.papers.reporting.audit_report import audit_document
-    from runner.store.atomic import write_atomically
 
     print("auditing the equations ...", file=sys.stderr)
     checked = audit_all()

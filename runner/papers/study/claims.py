@@ -7,6 +7,8 @@ from pathlib import Path
 
 import numpy as np
 
+from runner.base.atomic import write_atomically
+from runner.base.machine import today
 from runner.base.quantities import format_range, quantity
 from runner.metrics.positioning import STEADY_WINDOW
 from runner.papers.reporting.claims import Claim, ClaimResult
@@ -27,9 +29,8 @@ from runner.papers.reporting.published_claims import (
 from runner.papers.study.results import MissingError
 from runner.papers.study.study import Study
 from runner.reporting.words import PLANT
-from runner.statistics.spec import merge_histories, set_after, today
+from runner.statistics.spec import merge_histories, set_after
 from runner.store import Run
-from runner.store.atomic import write_atomically
 from runner.store.seal import read_json, sealed_json
 
 _DIGITS = 4  # at least as many as a source prints

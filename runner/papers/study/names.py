@@ -6,10 +6,10 @@ from importlib.metadata import EntryPoint, entry_points
 from importlib.util import find_spec
 from pathlib import Path
 
+from runner.base.atomic import write_atomically
 from runner.base.errors import RunnerError, nearest
 from runner.base.former_names import FILES
 from runner.base.paths import STUDY_FILE, example_study_dir, studies_dir, studies_with
-from runner.store.atomic import write_atomically
 
 GROUP = "runner.studies"
 """The group of entry points by which an installed package says that it is a study."""

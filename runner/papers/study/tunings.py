@@ -33,6 +33,7 @@ from typing import Annotated, Self
 import yaml
 from pydantic import Field, PositiveInt, model_validator
 
+from runner.base.atomic import write_atomically
 from runner.base.data_file import read_data
 from runner.base.errors import RunnerError, nearest
 from runner.config.compose.files import refuse_settings
@@ -40,7 +41,6 @@ from runner.papers.study.code import UserPlugin
 from runner.papers.study.grid import FlatOverrides, Grid, Level, Overrides
 from runner.papers.study.results import name_of
 from runner.plugins.metric_units import unit_of, units
-from runner.store.atomic import write_atomically
 from runner.sweeps.tuning.key import Key
 
 Factor = Annotated[float, Field(gt=0.0)]

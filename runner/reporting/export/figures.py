@@ -11,6 +11,7 @@ from typing import TypeVar
 
 import typst
 
+from runner.base.atomic import write_atomically
 from runner.base.errors import RunnerError, nearest
 from runner.base.sanitize import csv_text
 from runner.reporting.charts import static
@@ -21,7 +22,6 @@ from runner.reporting.document import Curves, Document, Maps, Picture, Playback
 from runner.reporting.markup import spans
 from runner.reporting.metric_titles import capital
 from runner.reporting.outline import blocks, numbered_place
-from runner.store.atomic import write_atomically
 
 _WIDTH, _HEIGHT = re.compile(r'\bwidth="([\d.]+)pt"'), re.compile(r'\bheight="([\d.]+)pt"')
 _POINTS, _MM = 72.0, 25.4  # in an inch

@@ -17,12 +17,12 @@ from matplotlib.lines import Line2D
 from PIL import Image
 
 from runner.base.arrays import FloatArray
+from runner.base.atomic import write_atomically
 from runner.reporting.charts import palette
 from runner.reporting.charts.canvas import GREY, INK, PALE, Camera, scene
 from runner.reporting.charts.sheet import Sheet, style, wrap_text
 from runner.reporting.document import Playback
 from runner.reporting.playback import body_shapes, finite_places, first_view, frames
-from runner.store.atomic import write_atomically
 
 _DOTS = 150  # in an inch
 _SLOWEST, _FASTEST = 10.0, 30.0  # frames a second

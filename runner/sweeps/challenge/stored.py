@@ -8,9 +8,9 @@ from dataclasses import asdict, dataclass, replace
 from pathlib import Path
 from typing import Any
 
+from runner.base.atomic import refuse_links, write_atomically
 from runner.statistics.scope import Judged
 from runner.statistics.turning import Turn
-from runner.store.atomic import refuse_links, write_atomically
 from runner.store.kinds import KINDS
 from runner.store.seal import DamagedError, read_json, sealed_json
 from runner.store.sweep import write_jobs

@@ -6,7 +6,7 @@ from collections.abc import Sequence
 from dataclasses import asdict, dataclass
 from pathlib import Path
 
-from runner.store.atomic import write_atomically
+from runner.base.atomic import write_atomically
 from runner.store.seal import DamagedError, read_json, sealed_json
 from runner.store.sweep import write_jobs
 from runner.sweeps.tuning.key import Key

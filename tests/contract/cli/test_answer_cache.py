@@ -2,8 +2,8 @@
 
 import pytest
 
+from runner.base import cache
 from runner.cli.completion.overrides import cache_key
-from runner.symbolic import cache
 
 LINE = ("robot=macro", "plant=rk4", "duration=0.05")
 

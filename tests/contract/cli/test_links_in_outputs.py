@@ -7,8 +7,8 @@ from pathlib import Path
 import pytest
 from support.engines import ASKED
 
+from runner.base.atomic import remove_leftovers
 from runner.base.errors import StoreError
-from runner.store.atomic import remove_leftovers
 from runner.store.kinds import FILES, KINDS
 from runner.store.writing import prepare
 

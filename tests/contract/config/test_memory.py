@@ -2,7 +2,7 @@
 
 from dataclasses import replace
 
-from runner.base.cache import Memory
+from runner.base.memory import Memory
 from runner.config.compose.compose import compose
 from runner.config.validation import validate
 

@@ -7,10 +7,10 @@ import sys
 
 import pytest
 
-from runner.store.atomic import remove_leftovers, write_atomically
+from runner.base.atomic import remove_leftovers, write_atomically
 
 DIES = (
-    "import os, sys; from pathlib import Path; import runner.store.atomic as a; os.fsync = lambda _: os._exit(9); "
+    "import os, sys; from pathlib import Path; import runner.base.atomic as a; os.fsync = lambda _: os._exit(9); "
     "a.write_atomically(Path(sys.argv[1]), b'half')"
 )
 

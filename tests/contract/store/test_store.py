@@ -13,9 +13,9 @@ import yaml
 from fixtures.stored import RUNS, SHORT
 
 import runner
+from runner.base.atomic import write_atomically
 from runner.base.errors import StoreError
 from runner.store import DamagedError, Run, find_run, open_run, prepare, seal
-from runner.store.atomic import write_atomically
 from runner.store.seal import sealed_json
 
 

@@ -9,10 +9,11 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+from runner.base import cache
 from runner.plants.compiled_motion import CompiledStep
 from runner.robots.description import find_urdf, read_urdf
 from runner.robots.model import RobotModel
-from runner.symbolic import cache, program
+from runner.symbolic import program
 
 MACRO = RobotModel(read_urdf(find_urdf("macro.urdf"), {}), "tip")
 

@@ -6,6 +6,7 @@ import re
 import numpy as np
 import pytest
 
+from runner.base.machine import today
 from runner.config.judgement import Bound
 from runner.statistics.proportion import count_share
 from runner.statistics.spec import (
@@ -18,7 +19,6 @@ from runner.statistics.spec import (
     read_spec,
     set_after,
     settings,
-    today,
 )
 
 VALUES = {

@@ -12,6 +12,7 @@ from typing import Any
 import numpy as np
 
 from runner import store
+from runner.base.atomic import write_atomically
 from runner.base.errors import StoreError
 from runner.base.machine import this_machine
 from runner.base.trace import Trace
@@ -30,7 +31,6 @@ from runner.simulation.closed_loop import ClosedLoop
 from runner.simulation.loop import simulate
 from runner.simulation.run import simulate_repetition
 from runner.simulation.sensors import make_encoders
-from runner.store.atomic import write_atomically
 from runner.store.seal import read_json, sealed_json
 
 FILE = Path("benchmarks", "precision.json")
