@@ -25,6 +25,7 @@ from runner.base.paths import conf_dir
 from runner.base.sanitize import quoted
 from runner.config.compose.composition_errors import COMPOSITION_ERRORS, explain
 from runner.config.compose.files import STUDY_GROUPS, built_in_studies, groups, state_of, user_overrides
+from runner.config.compose.kept_options import key_of, read_options, write_options
 from runner.config.compose.overrides import force, prepare
 from runner.config.compose.shortcuts import KeptRepository, kept_files, take_shortcuts
 from runner.config.compose.sources import VERSION_BASE, checked_sources
@@ -205,16 +206,21 @@ def _chooses_option(override: Override, known: Sequence[str]) -> bool:
 def _load_options(
     config_dirs: tuple[Path, ...], options: tuple[str, ...], root: str, mode: RunMode, files: object, *others: object
 ) -> bytes:
-    """Return the pickled config that Hydra composes from options.
+    """Return the pickled config that Hydra composes from options, or that an earlier process has kept.
 
     Besides the state of the files, None if it is unknown, the plug-ins decide the result.
     """
-    loader: Any = Composer(config_dirs).hydra
-    if files is not None:
-        kept = kept_files(config_dirs, files, *others)
-        with checked_sources(config_dirs):
-            loader.repository = KeptRepository(loader.config_search_path, kept)
-    config = loader.load_configuration(root, list(options), mode, from_shell=False)
+    key = key_of(config_dirs, options, root, mode, files) if files is not None and not any(others) else None
+    config = read_options(key) if key else None
+    if config is None:
+        loader: Any = Composer(config_dirs).hydra
+        if files is not None:
+            kept = kept_files(config_dirs, files, *others)
+            with checked_sources(config_dirs):
+                loader.repository = KeptRepository(loader.config_search_path, kept)
+        config = loader.load_configuration(root, list(options), mode, from_shell=False)
+        if key:
+            write_options(key, config)
     try:
         return pickle.dumps(config)
     except RecursionError:
