@@ -1,7 +1,8 @@
 """Compare runs or sweeps, the first with each of the others.
 
 Sweeps are compared by cell and repetition. With one sweep, it compares the values of an axis: --by, else its question,
-such as the controller. For a run and a recording of a real arm it writes a report in reports/ and prints its folder.
+such as the controller. For a run and a log of a real arm it writes a report in reports/ and prints its folder. With
+--robot it makes the run: the log's commands drive the model.
 
 Example: runner compare latest --by controller --within robot
 """
@@ -49,12 +50,15 @@ def add_arguments(parser: Parser) -> None:
     parser.add_argument(
         "--fill-gaps", type=_seconds, metavar="TIME", help="recording: longest gap to fill, such as 20ms"
     )
+    parser.add_argument("--robot", metavar="ROBOT", help="log: simulate its motion with this robot")
+    parser.add_argument("--controller", metavar="NAME", help="log: of that run (default: computed_torque)")
+    parser.add_shared("config_dir")
 
 
 def run(options: Namespace) -> int:
     """Print the comparison."""
     recordings = [path for path in options.folders if _is_recording(path)]
-    if recordings or options.columns or options.fill_gaps:
+    if recordings or options.columns or options.fill_gaps or options.robot or options.controller:
         _compare_recording(options.folders, recordings, options)
     else:
         _compare(options)
@@ -196,22 +200,60 @@ def _seconds(text: str) -> float:
 
 def _compare_recording(given: Sequence[Path], recordings: Sequence[Path], options: Namespace) -> None:
     folders = [path for path in given if path not in recordings]
+    if options.by or options.within or options.metrics or options.where or options.json or options.all:
+        raise RunnerError("--by, --within, --where, --metrics, --json and --all: not for recordings.")
+    if options.robot:
+        if len(recordings) != 1 or folders:
+            raise RunnerError("--robot: not one log. Allowed: `runner compare LOG --robot ROBOT`, which makes the run.")
+        _replay(recordings[0], options)
+        return
+    if options.controller:
+        raise RunnerError("--controller: no run is made without --robot. Allowed: `runner compare LOG --robot ROBOT`.")
     if len(recordings) != 1 or len(folders) != 1:
         raise RunnerError(
-            "recordings: not one run and one recording. Allowed: `runner compare RUN recording.csv --columns map.yaml`"
+            "recordings: not one run and one recording. Allowed: `runner compare RUN recording.csv --columns map.yaml` "
+            "or `runner compare recording.csv --robot ROBOT`."
         )
     if options.columns is None:
         raise RunnerError(f"{recordings[0]}: add --columns FILE, which describes its columns (docs/recordings.md).")
     if kind_of(folders[0]) != "run":
         raise RunnerError(f"{folders[0]}: it is a sweep. Allowed: one run and one recording.")
-    if options.by or options.within or options.metrics or options.where or options.json or options.all:
-        raise RunnerError("--by, --within, --where, --metrics, --json and --all: not for recordings.")
-    _print_recording(folders[0], recordings[0], options)
-
-
-def _print_recording(folder: Path, recording: Path, options: Namespace) -> None:
-    """Print the differences between a recording and a run, and write the report; its folder is the last line."""
     from runner import store
+
+    run = store.open_run(folders[0])
+    _print_recording(run, recordings[0], options.columns, options.fill_gaps or 0.0, options)
+
+
+def _replay(recording: Path, options: Namespace) -> None:
+    """Make the run of a log, and compare it with the log."""
+    from runner.config.compose.files import outputs_dir
+    from runner.doctor.replay import replay
+
+    made = replay(
+        recording,
+        options.robot,
+        outputs_dir(),
+        options.controller or "computed_torque",
+        options.columns,
+        options.config_dir,
+    )
+    for note in made.notes:
+        print(one_line(f"runner: motion: {note}"), file=sys.stderr)
+    if not made.commanded:
+        print(
+            "runner: the log has no commanded positions: the run follows the measured ones, so that only torques say "
+            "something of the model",
+            file=sys.stderr,
+        )
+    if made.run.status != "ok":
+        raise RunnerError(
+            f"{made.run.folder}: the run {made.run.failure}; it cannot be compared. Try another --controller."
+        )
+    _print_recording(made.run, recording, made.columns, options.fill_gaps or made.fill_gaps, options)
+
+
+def _print_recording(run: "Run", recording: Path, columns: Path, fill_gaps: float, options: Namespace) -> None:
+    """Print the differences between a recording and a run, and write the report; its folder is the last line."""
     from runner.base import progress
     from runner.recordings.compare import compare_recording
     from runner.reporting.recording_report import recording_document, report_folder
@@ -219,7 +261,7 @@ def _print_recording(folder: Path, recording: Path, options: Namespace) -> None:
     from runner.store.kinds import note
 
     progress.begin("reading runs")
-    found = compare_recording(store.open_run(folder), recording, options.columns, options.fill_gaps or 0.0)
+    found = compare_recording(run, recording, columns, fill_gaps)
     print(_recording_text(found), end="\n\n")
     made = options.output or report_folder(found)
     write_report(recording_document(found), made)
@@ -231,7 +273,7 @@ def _recording_text(found: "RecordingComparison") -> str:
     from runner.plugins.metric_units import unit_of
     from runner.recordings import words
     from runner.recordings.verdict import verdict_lines
-    from runner.reporting.recording_report import friction, residuals
+    from runner.reporting.recording_report import friction, motions, residuals
     from runner.reporting.table import Cell, Number, Table, numbers, terminal
 
     metrics: list[list[Cell]] = [
@@ -245,6 +287,7 @@ def _recording_text(found: "RecordingComparison") -> str:
         one_line(words.aligned_text(found)),
         "",
         terminal(residuals(found), indent=""),
+        *(line for table in motions(found) for line in ("", table.caption, terminal(table, indent=""))),
         "",
         one_line(words.FIT),
         "",

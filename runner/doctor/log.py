@@ -22,6 +22,8 @@ from runner.recordings.recording import Recording, to_recording
 from runner.robots.model import RobotModel
 from runner.schema.units import WRITTEN
 
+LONGEST_GAP = 0.1
+"""Longest gap of a log that is filled, in s."""
 _SHORTEST = 2.0  # s
 _SLOWEST, _FASTEST = 2.0, 20_000.0  # Hz, of a log's rows
 _EPOCHS = (("ns", 1e17), ("us", 1e14), ("ms", 1e11), ("s", 1e8))  # the least that a time since 1970 is, in each unit
@@ -146,7 +148,7 @@ def judge(found: LogExamination, model: RobotModel, said: ColumnsMap) -> LogExam
     Raises:
         RunnerError: if the signals cannot be read, or last less than 2 s.
     """
-    recording = to_recording(found.table, said, factors_of(said, model.joint_names, model.joint_units), 0.1)
+    recording = to_recording(found.table, said, factors_of(said, model.joint_names, model.joint_units), LONGEST_GAP)
     if recording.duration < _SHORTEST:
         raise RunnerError(
             f"{recording.path}: the log lasts {recording.duration:.3g} s. Allowed: {_SHORTEST:g} s or more of motion."

@@ -9,6 +9,7 @@ from runner.base.arrays import FloatArray
 from runner.base.quantities import quantity
 from runner.recordings.columns_map import Signal
 from runner.recordings.compare import RecordingComparison, Residual
+from runner.recordings.motions import cut_at_rests
 from runner.recordings.smoothing import cutoff, derivative, low_pass
 from runner.robots.model import RobotModel
 
@@ -25,7 +26,9 @@ def verdict_lines(found: RecordingComparison) -> Iterator[str]:
     """
     first, last = found.span
     said = [text for text in (_positions(found.residuals), _torques(found.residuals)) if text]
-    yield f"Over {quantity(last - first, 's')} the model predicts {' and '.join(said)}."
+    count = len(cut_at_rests(found))
+    many = f", on {count} motions," if count > 1 else ""
+    yield f"Over {quantity(last - first, 's')}{many} the model predicts {' and '.join(said)}."
     shares = explained(found)
     causes = [f"{cause} {_per_cent(share)}" for cause, share in shares.items() if share >= _EXPLAINS]
     if causes:

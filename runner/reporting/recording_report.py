@@ -9,6 +9,7 @@ from runner.base.quantities import above_rounding, label_with_unit, quantity
 from runner.plugins.metric_units import unit_of
 from runner.recordings import digest_of, words
 from runner.recordings.compare import RecordingComparison, Residual
+from runner.recordings.motions import Accuracy, accuracies
 from runner.recordings.verdict import verdict_lines
 from runner.reporting.charts.figure import spaced_indices
 from runner.reporting.document import Block, Curves, Document, Notice, Panel, Provenance, Section, Series, Table, Text
@@ -21,6 +22,15 @@ from runner.store.kinds import outputs_of, report_place
 
 _MOST_POINTS = 600
 _RECORDED, _SIMULATED = 0, 1  # colours
+_PEAK = "A speed is a share of the largest one of its joint."
+_ACCURACY: list[str | Column] = [
+    "motion",
+    *numbers("from [s]", "to [s]"),
+    "peak speed",
+    "positions, 95 % of the time",
+    "tip, 95 %",
+    "torques",
+]
 
 
 def recording_document(found: RecordingComparison) -> Document:
@@ -32,6 +42,7 @@ def recording_document(found: RecordingComparison) -> Document:
         abstract=literal(_abstract(found)),
         sections=[
             Section("Residuals", [_residual_curves(found), residuals(found), Text(f"The {words.FIT}.")]),
+            *([Section("Motions", tables)] if (tables := motions(found)) else []),
             Section("Both signals", [_both_curves(found)]),
             Section(
                 "Time offset",
@@ -92,6 +103,27 @@ def residuals(found: RecordingComparison) -> Table:
     ]  # fmt: skip
     header = ["recorded - run", "unit", *numbers("mean", "rms", "largest", "fit")]
     return Table("Recorded less simulated, at the run's ticks.", header, rows)
+
+
+def motions(found: RecordingComparison) -> list[Table]:
+    """Return a table by group of speed and one by motion; none for a recording of one motion."""
+    each, groups = accuracies(found)
+    by_speed = [[name, *rest] for name, _, _, *rest in map(_accuracy, groups)]
+    titles = [*_ACCURACY[:1], *_ACCURACY[3:]]
+    tables = [
+        Table(f"Accuracy by speed: thirds of the motions by their peak speed. {_PEAK}", titles, by_speed),
+        Table(f"Accuracy in each motion, from rest to rest. {_PEAK}", _ACCURACY, [_accuracy(one) for one in each]),
+    ]
+    return [table for table in tables if len(each) > 1 and table.rows]
+
+
+def _accuracy(one: Accuracy) -> list[Cell]:
+    low, high = one.speeds
+    speeds = f"{high:.0%}" if low == high else f"{low:.0%} to {high:.0%}"
+    reached = "-" if np.isnan(one.position) else f"{quantity(one.position, one.unit)} ({one.joint})"
+    tip = "-" if np.isnan(one.tip) else quantity(one.tip, "m")
+    torque = "-" if np.isnan(one.torque) else f"{100.0 * one.torque:.3g} %"
+    return [one.name, Number(one.first), Number(one.last), speeds.replace("%", " %"), reached, tip, torque]
 
 
 def friction(found: RecordingComparison) -> Table:

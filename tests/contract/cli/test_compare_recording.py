@@ -117,3 +117,78 @@ def test_from_python(found, swing):
     assert again.metrics == found.metrics
     with pytest.raises(runner.RunnerError, match=r"cannot read none.csv"):
         runner.open_run(swing.folder).compare_recording("none.csv", HERE / "columns.yaml")
+
+
+def write_log(path, commands=True):
+    """Write a log of a Macro with friction that moves twice from rest to rest; its clock starts at 5 s."""
+    pause, step = np.zeros(150), 0.004
+    share = np.arange(0.0, 1.0, step / 0.8)
+    blend = 10.0 * share**3 - 15.0 * share**4 + 6.0 * share**5
+    way = np.concatenate([pause, blend, 1.0 + pause, 1.0 - 0.5 * blend, 0.5 + pause])
+    rows = np.array([0.3, 0.6, 0.8]) + way[:, None] * np.array([0.5, -0.4, 0.3])
+    t = step * np.arange(len(rows))
+    np.savetxt(path.with_name("ref.csv"), np.column_stack([t, rows]), delimiter=",", header="t,q1,q2,q3", comments="")
+    arm = run(
+        "robot=macro", "controller=computed_torque", "plant=rk4", "trajectory=from_file", "plant.friction.viscous=2",
+        f"trajectory.file={path.with_name('ref.csv')}", f"outputs={path.with_name('arm')}",
+    )  # fmt: skip
+    trace = arm.trace()
+    columns = {"timestamp": trace["t"] + 5.0}
+    for place, joint in enumerate(("q1", "q2", "q3")):
+        columns |= {f"actual_q_{place}": trace[joint], f"actual_current_as_torque_{place}": trace[f"tau{place + 1}"]}
+        if commands:
+            columns[f"target_q_{place}"] = np.interp(trace["t"], t, rows[:, place])
+    table = np.column_stack([np.asarray(values) for values in columns.values()])
+    np.savetxt(path, table, delimiter=",", header=",".join(columns), comments="")
+    return arm
+
+
+@pytest.mark.costs(8)
+def test_a_log_is_replayed_and_cut_into_motions(cli, tmp_path):
+    write_log(tmp_path / "log.csv")
+    ending = cli("compare", "log.csv", "--robot", "macro")
+    assert ending.code == 0
+    first, *_ = ending.out.splitlines()
+    assert re.match(
+        r"Over [\d.]+ s, on 2 motions, the model predicts positions within .* and torques to .* % of", first
+    )
+    assert "Accuracy in each motion, from rest to rest." in ending.out
+    assert ending.folder.parent.name == "reports"
+    (made,) = (tmp_path / "outputs" / "runs").iterdir()
+    written = (made / "metrics.json").stat().st_mtime_ns
+    again = cli("compare", "log.csv", "--robot", "macro")
+    assert again.out == ending.out
+    assert (made / "metrics.json").stat().st_mtime_ns == written
+    stored = runner.open_run(made)
+    assert stored.config["plant"]["kind"] == "rk4"
+    assert stored.config["controller"]["kind"] == "computed_torque"
+    (files,) = (tmp_path / "outputs" / "logs").iterdir()
+    assert sorted(path.name for path in files.iterdir()) == ["columns.yaml", "motion.csv"]
+
+
+@pytest.mark.costs(4)
+def test_a_log_without_commands_follows_its_measured_positions_and_says_so(cli, tmp_path):
+    write_log(tmp_path / "log.csv", commands=False)
+    ending = cli("compare", "log.csv", "--robot", "macro", "--controller", "joint_pd")
+    assert ending.code == 0
+    assert "the log has no commanded positions: the run follows the measured ones" in ending.err
+    (made,) = (tmp_path / "outputs" / "runs").iterdir()
+    assert runner.open_run(made).config["controller"]["kind"] == "joint_pd"
+
+
+@pytest.mark.parametrize(
+    ("words", "told"),
+    [
+        (("lab.csv", "--controller", "joint_pd"), "--controller: no run is made without --robot."),
+        (("lab.csv", "lab.csv", "--robot", "macro"), "--robot: not one log."),
+        (("lab.csv", "--robot", "makro"), "did you mean macro?"),
+        (("lab.csv", "--robot", "macro"), "no columns of joint positions are known"),
+        (("lab.csv", "--robot", "macro", "--by", "controller"), "not for recordings."),
+    ],
+)
+def test_bad_replays_end_with_one_sentence(cli, tmp_path, words, told):
+    (tmp_path / "lab.csv").write_bytes((HERE / "recording.csv").read_bytes())
+    ending = cli("compare", *words)
+    assert ending.code == 2
+    assert told in ending.err
+    assert not (tmp_path / "outputs").exists()
