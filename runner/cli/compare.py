@@ -1,8 +1,7 @@
 """Compare runs or sweeps, the first with each of the others.
 
-Sweeps are compared by cell and repetition. With one sweep, it compares the values of an axis: --by, else its question,
-such as the controller. For a run and a log of a real arm it writes a report in reports/ and prints its folder. With
---robot it makes the run: the log's commands drive the model.
+With one sweep, it compares the values of an axis: --by, else its question. A log of a real arm is compared with a run,
+or with --robot with one that its commands drive; the last line is the report's folder.
 
 Example: runner compare latest --by controller --within robot
 """
@@ -17,7 +16,7 @@ from typing import TYPE_CHECKING, Any
 
 from runner.base.errors import RunnerError
 from runner.base.sanitize import one_line
-from runner.cli.arguments import Parser, Stored
+from runner.cli.arguments import Parser, Stored, config_folder
 from runner.store.kinds import kind_of, open_stored
 
 if TYPE_CHECKING:
@@ -30,6 +29,7 @@ _LOGS = (".csv", ".tsv", ".txt", ".log", ".parquet", ".zip", ".bag", ".mcap", ".
 
 def add_arguments(parser: Parser) -> None:
     """Add the arguments."""
+    parser.usage = "runner compare [OPTION ...] DIR [DIR ...]"  # argparse would list all options
     parser.add_argument(
         "folders",
         nargs="+",
@@ -40,9 +40,9 @@ def add_arguments(parser: Parser) -> None:
     parser.add_shared(
         metrics="metrics (default: five; all with --all or --json)",
         json="print JSON, one object for each row",
-        by="one sweep: axes, the first its question from now on",
-        within="within each level of these axes (default: over all, then the strongest)",
-        where="only cells with this value of a key; repeat for more",
+        by="one sweep: axes, the first its new question",
+        within="within each level of these axes (default: over all)",
+        where="only cells with this value of a key; repeatable",
         output="recording: folder of the report",
     )
     parser.add_argument("--all", action="store_true", help="print every metric and the method")
@@ -52,7 +52,14 @@ def add_arguments(parser: Parser) -> None:
     )
     parser.add_argument("--robot", metavar="ROBOT", help="log: simulate its motion with this robot")
     parser.add_argument("--controller", metavar="NAME", help="log: of that run (default: computed_torque)")
-    parser.add_shared("config_dir")
+    parser.add_argument(
+        "--config-dir",
+        type=config_folder,
+        action="append",
+        default=[],
+        metavar="DIR",
+        help="log: your folder of YAML and URDFs; repeatable",
+    )
 
 
 def run(options: Namespace) -> int:

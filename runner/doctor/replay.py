@@ -45,7 +45,7 @@ def replay(
     columns: Path | None = None,
     config_dirs: Sequence[Path] = (),
 ) -> Replay:
-    """Simulate the motion of a log with a model of the arm, in closed loop; a stored run is taken as it is.
+    """Simulate the motion of a log with a model of the arm, in closed loop, or find the stored run.
 
     Args:
         log: The log, a file or a folder.

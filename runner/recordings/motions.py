@@ -13,7 +13,7 @@ _REST = 0.02  # of the largest speed of a joint: a joint that is slower rests
 _PAUSE = 0.2  # s, the shortest rest
 _SHORTEST = 0.1  # s, of a motion
 _FEWEST = 6  # motions that are grouped by speed
-_MOST_ROWS = 4_000  # rows of which the tip is computed
+_MOST_ROWS = 4_000  # rows for the distance of the tip
 GROUPS = ("slow", "medium", "fast")
 
 
