@@ -179,7 +179,7 @@ def test_cells_stand_in_order():
     (panel,) = distributions.section(subject).blocks[1].panels
     assert (np.diff(panel.series[0].y) >= 0).all()
     assert panel.series[0].runs == subject.hashes(subject.ranked)
-    assert (panel.x_label, panel.x_names) == ("controller.period", ["0.04", "0.02", "0.01"])
+    assert (panel.x_label, panel.x_names) == ("cell: controller.period", ["0.04", "0.02", "0.01"])
     assert panel.series[0].x.tolist() == [0.0, 1.0, 2.0]
     assert len(distributions.section(two_axes()).blocks) == 1  # noise is a condition, which no designer orders
 
