@@ -130,10 +130,10 @@ def _distribution(values: FloatArray) -> tuple[FloatArray, FloatArray]:
 def _in_order(subject: Subject, metric: str) -> Curves:
     places = spaced_indices(len(subject.ranked), POINTS)
     ranked = [subject.ranked[place] for place in places]
-    x, across, names, style = np.array(places, dtype=float) + 1.0, "rank of the cell, by median", [], "points_line"
+    x, across, names = np.array(places, dtype=float) + 1.0, "rank of the cell, by median", []
     if len(ranked) <= _MOST_NAMED:
         swept = [axis for axis in subject.axes if len(axis.values) > 1]
-        x, across, style = x - 1.0, "cell: " + ", ".join(axis.name for axis in swept), "points"
+        x, across = x - 1.0, "cell: " + ", ".join(axis.name for axis in swept)
         names = [", ".join(axis.text(int(axis.level[cell])) for axis in swept) for cell in ranked]
     values = subject.measurements.values[metric]
     low, high = np.full(len(ranked), np.nan), np.full(len(ranked), np.nan)
@@ -143,7 +143,7 @@ def _in_order(subject: Subject, metric: str) -> Curves:
     low, high = (np.where(np.isfinite(edge), edge, np.nan) for edge in (low, high))
     medians = subject.medians[metric][ranked]
     hints, runs = subject.hints(ranked), subject.hashes(ranked)
-    series = Series("", x, medians, style, low, high, hints=hints, runs=runs)
+    series = Series("", x, medians, "points" if names else "points_line", low, high, hints=hints, runs=runs)
     panel = Panel("", across, subject.label(metric), [series], y_log=spans_decades(values.ravel()), x_names=names)
     return Curves(
         "Median of each cell, in ascending order, and the range of its repetitions from their 5 % to their 95 % "
