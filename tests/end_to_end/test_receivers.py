@@ -53,7 +53,7 @@ def test_latex_sets_figure_and_table_within_the_column(exported, kind):
     (folder / "paper.tex").write_text(
         rf"""\documentclass{kind}
 \usepackage{{booktabs}}\usepackage{{siunitx}}\usepackage{{graphicx}}
-\begin{{document}}
+\begin{{document}}\pagestyle{{empty}}
 \begin{{table}}\centering\caption{{X}}\input{{table}}\end{{table}}
 {drawn}
 Text.
