@@ -12,6 +12,7 @@ from support.thin_plans import make_calibrations, make_runs
 from runner.reporting.formulas import faulty
 from runner.store import Run
 from runner.study.check import never_failing
+from runner.study.expected_caveats import unexpected_caveats
 from runner.study.measured import findings
 from runner.study.study import load_study
 
@@ -46,6 +47,7 @@ def test_every_finding_holds(shared_store: Path, study: str) -> None:
     held = [found for _, found in findings(made.document)]
     assert [found.text for found in held if not found.holds] == []
     assert len(held) == FINDINGS[study]
+    assert unexpected_caveats(made.runs, made.study.expected) == []
     assert never_failing_in(made) == []
     assert faulty(made.document) == []
 
