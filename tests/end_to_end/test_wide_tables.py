@@ -14,11 +14,11 @@ from runner.reporting.render import render_html
 MEASURE = """<script>
 document.querySelectorAll("details").forEach((each) => { each.open = true; });
 const wide = [...document.querySelectorAll(".scroll")].filter((each) => each.scrollWidth > each.clientWidth + 1);
-const told = document.createElement("pre");
-told.id = "measured";
-told.textContent = JSON.stringify([document.querySelectorAll(".scroll").length, wide.map((each) =>
+const found = document.createElement("pre");
+found.id = "measured";
+found.textContent = JSON.stringify([document.querySelectorAll(".scroll").length, wide.map((each) =>
   `${each.getAttribute("aria-label")}: ${each.scrollWidth} of ${each.clientWidth} px`)]);
-document.body.append(told);
+document.body.append(found);
 </script>"""
 
 pytestmark = pytest.mark.slow

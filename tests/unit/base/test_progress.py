@@ -231,7 +231,7 @@ class Cell:
 
 @pytest.fixture
 def kernel(monkeypatch):
-    """A Jupyter kernel, whose standard error is no terminal."""
+    """A Jupyter kernel, whose standard error is not a terminal."""
     shell = SimpleNamespace(config={"IPKernelApp": {}}, display_pub=Cell())
     monkeypatch.setitem(sys.modules, "IPython", SimpleNamespace(get_ipython=lambda: shell))
     with contextlib.redirect_stderr(io.StringIO()):
