@@ -5,10 +5,12 @@ the count. `show_progress` draws the bar; without it these functions do nothing.
 """
 
 import contextlib
+import io
 import os
 import sys
 import threading
 import time
+import uuid
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass, field
 from typing import Any, Self, TextIO
@@ -95,6 +97,25 @@ class _Display:
         self._close()
 
 
+class _NotebookLine(io.StringIO):
+    """A line of a cell's outputs that is replaced in place, so that an executed notebook keeps no progress."""
+
+    encoding = "utf-8"
+
+    def __init__(self, publisher: Any) -> None:
+        super().__init__()
+        self._publisher, self._name = publisher, f"progress-{uuid.uuid4()}"
+        self._shown: str | None = None  # before the first text
+
+    def write(self, text: str) -> int:
+        line = text.strip()
+        if text and line != (self._shown or ""):
+            data, transient = {"text/plain": line}, {"display_id": self._name}
+            self._publisher.publish(data, transient=transient, update=self._shown is not None)
+            self._shown = line
+        return len(text)
+
+
 class _Output:
     """An output of the process that removes the bar before each print."""
 
@@ -153,23 +174,24 @@ def show_progress() -> Iterator[None]:
 
 @contextlib.contextmanager
 def _terminal() -> Iterator[TextIO | None]:
-    """Yield a copy of standard error if it is a terminal; standard error itself in a notebook; None otherwise."""
+    """Yield a copy of standard error if it is a terminal; a line of the cell in a notebook; None otherwise."""
     copy = None
     with contextlib.suppress(OSError, ValueError):  # it is closed, or not a file
         if sys.stderr.isatty():
             copy = os.dup(sys.stderr.fileno())
     if copy is None:
-        yield sys.stderr if _in_notebook() else None
+        shell = _find_kernel()
+        yield None if shell is None else _NotebookLine(shell.display_pub)
         return
     with os.fdopen(copy, "w", encoding=sys.stderr.encoding, errors="replace") as stream:
         yield stream
 
 
-def _in_notebook() -> bool:
-    """Return True in a Jupyter kernel, which handles a carriage return as a terminal does."""
+def _find_kernel() -> Any:
+    """Return IPython's shell in a Jupyter kernel; None elsewhere."""
     known: Any = sys.modules.get("IPython")
     shell = known.get_ipython() if known is not None else None
-    return shell is not None and "IPKernelApp" in shell.config
+    return shell if shell is not None and "IPKernelApp" in shell.config else None
 
 
 def _bar(stream: TextIO, stage: _Stage, name: str) -> Any:

@@ -75,7 +75,7 @@ def run(options: argparse.Namespace) -> int:
         bands = before if isinstance(before, Bands) else None
         found = Sensitivity() if bands else find_sensitive(sweep)
         count = renew_bands(bands, list(sweep.runs()), path) if bands else save_baseline(sweep, path, found.changes)
-        print(f"saved: {count} metrics of {options.folder} are now in {path}{found.in_words()}")
+        print(f"saved: {count} metric{'s' if count > 1 else ''} of {options.folder} in {path}{found.in_words()}")
         return 0
     baseline = load_baseline(options.baseline) if options.baseline else None
     if not (baseline is None or isinstance(baseline, Bands)):

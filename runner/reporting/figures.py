@@ -15,6 +15,7 @@ from runner.reporting.playback import joint_places, playback_bodies
 from runner.store import Calibration, Run
 
 AXES = ("x", "y", "z")
+LEAVES_AXES = "A curve that leaves the axes diverges."
 _LAST, _LAST_ROWS = 0.02, 20  # s and rows before a failure
 _STILLS = 6  # instants in the still picture of a motion
 _FRAMES = 30
@@ -58,29 +59,23 @@ def torque_and_error(run: Run, caption: str) -> Curves:
     )
 
 
-def last_moments(run: Run, failed_at: float) -> Curves:
-    """Return torques and tip error of a failed run over its last 20 ms, or its last 20 rows if these take longer.
+def before_failure(run: Run, failed_at: float) -> list[Curves]:
+    """Return torques and tip error of a failed run over its last 20 ms, or last rows if these take longer; then all.
 
-    The vertical axes end at four times the median size of the values; a diverging curve leaves them.
+    The vertical axes end at four times the median size of the last values; a diverging curve leaves them. A run that
+    is no longer than its last moments has one figure.
 
     Args:
         run: The run.
         failed_at: Time of the failure, in s.
     """
     start = max(0.0, min(failed_at - _LAST, float(run.t[-min(len(run.t), _LAST_ROWS)])))
-    caption = "The last moments before the failure, repetition 0. A curve that leaves the axes diverges."
-    return _cut(torque_and_error(run, caption), start, failed_at)
-
-
-def until_failure(run: Run, failed_at: float) -> Curves:
-    """Return torques and tip error of a failed run from its start, with vertical axes as of its last moments.
-
-    Args:
-        run: The run.
-        failed_at: Time of the failure, in s.
-    """
-    caption = "Torque of each joint and tip position error up to the failure, repetition 0."
-    return _cut(torque_and_error(run, caption), 0.0, failed_at)
+    told = f"Torque of each joint and tip position error up to the failure, repetition 0. {LEAVES_AXES}"
+    whole = _cut(torque_and_error(run, told), 0.0, failed_at)
+    if start == 0.0:
+        return [whole]
+    last = torque_and_error(run, f"The last moments before the failure, repetition 0. {LEAVES_AXES}")
+    return [_cut(last, start, failed_at), whole]
 
 
 def _cut(shown: Curves, start: float, end: float) -> Curves:

@@ -2,12 +2,13 @@
 
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass, replace
+from itertools import compress
 
 import numpy as np
 
 from runner.base.arrays import FloatArray
 from runner.reporting.document import Block, Curves, Panel, Series
-from runner.reporting.figures import origin, playback
+from runner.reporting.figures import LEAVES_AXES, origin, playback
 from runner.store import Run
 
 QUANTILES = (0.1, 0.9)
@@ -37,7 +38,8 @@ class Level:
 def overlaid(levels: Sequence[Level], told: str = "", played: str = "") -> list[Block]:
     """Return the tip error and the torque of each joint, with the motion of the first run of each level; repetition 0.
 
-    Noisy curves have a panel for each level, others are in the same axes.
+    Noisy curves have a panel for each level, others are in the same axes. Axes have room for runs that finished; those
+    of a failed run may leave them.
 
     Args:
         levels: The levels, up to eight, so that looks tell them apart.
@@ -48,12 +50,21 @@ def overlaid(levels: Sequence[Level], told: str = "", played: str = "") -> list[
     several = 1 < len(levels) <= _MOST_SIDE_BY_SIDE and len(levels) * len(found) <= _MOST_PANELS
     noisy = [several and any(_is_noisy(series.y) for series in some) for *_, some in found]
     parted, together = ([each for each, own in zip(found, noisy, strict=True) if own is kind] for kind in (True, False))
+    finished = [all(run.status == "ok" for run in level.runs) for level in levels]
+    is_mixed = len(set(finished)) > 1
     panels = [
-        Panel(title, "time (s)", label, some, has_legend=not (parted and place))
+        Panel(
+            title,
+            "time (s)",
+            label,
+            some,
+            y_range=_range(list(compress(some, finished))) if is_mixed else None,
+            has_legend=not (parted and place),
+        )
         for place, (title, label, _, some) in enumerate(together)
     ]
     for title, label, _, some in parted:
-        shared = _range(some)
+        shared = _range(list(compress(some, finished)) if is_mixed else some)
         panels += [
             Panel(f"{title}, {each.name}", "time (s)", label, [each], y_range=shared, has_legend=False) for each in some
         ]
@@ -64,6 +75,7 @@ def overlaid(levels: Sequence[Level], told: str = "", played: str = "") -> list[
     )
     caption = (
         f"Distance of the tip from its desired position, and torques; repetition 0, the one that is stored.{told}{band}"
+        f"{f' {LEAVES_AXES}' if is_mixed else ''}"
     )
     first, *others = [
         replace(playback(level.runs[0], "", has_still=not place), name=level.name, look=level.look)

@@ -2,7 +2,7 @@
 
 import json
 import re
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from typing import Any
 
 import numpy as np
@@ -15,7 +15,7 @@ from runner.base.quantities import above_rounding, number, quantity, with_powers
 from runner.config.compose.compose import compose
 from runner.metrics.rounding import SENSITIVE, STEP
 from runner.reporting.document import Block, Code, Cover, Document, Notice, Provenance, Section, Table, Text
-from runner.reporting.figures import cover, desired_motion, last_moments, playback, torque_and_error, until_failure
+from runner.reporting.figures import before_failure, cover, desired_motion, playback, torque_and_error
 from runner.reporting.markup import literal
 from runner.reporting.metric_titles import capital, key_metrics, title
 from runner.reporting.nearest_limit import nearest_to_limit
@@ -28,6 +28,9 @@ from runner.store import Run
 from runner.store.baselines import check_run, find_shipped
 from runner.store.run import caveat_changes
 
+Changes = Mapping[str, tuple[Any, Any]]
+"""Key, value in its group, and value of the run."""
+
 _KEY_METRICS = 4
 _AT_REST = 4.0  # times the settling time, after which an arm is taken to rest
 _KEY_AND_VALUE = (Column("key", "code"), Column("value", "code"))
@@ -36,13 +39,14 @@ _LEVELS = {"0.01": "1 %", "0.99": "99 %"}  # quantiles that a table has room for
 
 def run_document(run: Run) -> Document:
     """Return the report on a stored run: its name, the moving arm and four numbers first."""
+    changed = changed_keys(run)
     return Document(
         title=run_name(run),
-        subtitle=_subtitle(run),
+        subtitle=_subtitle(run, changed),
         abstract=literal(_abstract(run)),
         sections=[
             Section("The run", run_blocks(run)),
-            Section("Config", config_blocks(run)),
+            Section("Config", config_blocks(run, changed)),
             Section("Provenance", (provenance([run]),)),
         ],
         date=str(run.provenance["date"]),
@@ -114,12 +118,15 @@ def _cover(run: Run) -> Cover:
     return cover(run, f"The first {quantity(until, 's')} of repetition 0.", until)
 
 
-def _subtitle(run: Run) -> str:
-    """Return limits and disturbances of the arm, and the experiment that was asked for."""
+def _subtitle(run: Run, changed: Changes | None) -> str:
+    """Return limits and disturbances of the arm, with the keys changed there, and the experiment that was asked for."""
     chosen = run.provenance["choices"]
     named = f"torque limits {_spaced(chosen['torque_limits'])}" if "torque_limits" in chosen else "torque limits"
     limits = "no torque limits" if run.config["torque_limits"]["max"] is None else named
-    texts = [f"noise {_spaced(chosen['noise'])}"] if "noise" in chosen else []
+    own = {key: value for key, (_, value) in (changed or {}).items() if key.startswith(("torque_limits.", "noise."))}
+    is_bare = chosen.get("noise") == "none" and any(key.startswith("noise.") for key in own)
+    texts = [f"noise {_spaced(chosen['noise'])}"] if "noise" in chosen and not is_bare else []
+    texts += [f"{key}={_yaml(value)}" for key, value in own.items()]
     texts += [f"input shaper {run.config['input_shaper']['kind'].upper()}"] if "input_shaper" in run.config else []
     texts += ["a notch in the torques"] if "notch" in run.config else []
     texts += [f"experiment {chosen['experiment']}"] if "experiment" in chosen else []
@@ -142,8 +149,7 @@ def run_blocks(run: Run) -> list[Block]:
         )
     blocks += caveat_notices(run)
     if failure is not None and failure["repetition"] == 0 and failure["time"]:
-        blocks.append(last_moments(run, float(failure["time"])))
-        blocks.append(until_failure(run, float(failure["time"])))
+        blocks += before_failure(run, float(failure["time"]))
     else:
         blocks.append(torque_and_error(run, "Torque of each joint and tip position error, repetition 0."))
     if config["trajectory"]["kind"] != "goal" and failure is None:
@@ -200,9 +206,8 @@ def _metrics(run: Run) -> Table:
     )
 
 
-def config_blocks(run: Run) -> list[Block]:
+def config_blocks(run: Run, changed: Changes | None) -> list[Block]:
     """Return the keys that were changed, and then all of them; only all keys for a config that no group here makes."""
-    changed = changed_keys(run)
     resolved = {key: value for key, value in run.config.items() if key != "outputs"}
     rows = [[dotted(place), _yaml(value)] for place, value in leaves(resolved, lists=False)]
     file = Code(yaml.safe_dump(resolved, sort_keys=False, allow_unicode=True), "config.yaml")
@@ -268,7 +273,7 @@ def _yaml(value: Any) -> str:
     return re.sub(r"\b(\d)0{6,}\.0\b", lambda found: f"{float(found[0]):.0e}".replace("e+0", "e"), text)
 
 
-def changed_keys(run: Run) -> dict[str, tuple[Any, Any]] | None:
+def changed_keys(run: Run) -> Changes | None:
     """Return the keys that differ from what the run's groups hold by themselves, each as (default, value).
 
     Returns:

@@ -12,6 +12,7 @@ from runner.statistics import fewest_pairs
 from runner.statistics.conclusion import ALPHA
 
 _MOST_SENTENCES, _MOST_CONDITIONS = 6, 6
+_LONG = {"not shown": "no difference shown"}  # words of the map of answers, in a sentence
 
 
 def sentences(answers: Sequence[Answer]) -> list[str]:
@@ -91,7 +92,9 @@ def _tally(found: Sequence[Condition]) -> str:
         spread = f" ({low if low == high else f'{low} to {high}'} %)" if shares else ""
         texts.append(f"{name} is smaller in {count} of {len(found)} conditions{spread}")
     others = Counter(each.word.partition(" (")[0] for each in found if not each.winner)
-    rest = [f"{word} in {count}" for word, count in others.items()]
+    rest = [f"{_LONG.get(word, word)} in {count}" for word, count in others.items()]
+    if rest and not texts:
+        return f"{', '.join(rest)} of {_count(len(found), 'condition')}"
     return "; ".join([*texts, ", ".join(rest)] if rest else texts)
 
 

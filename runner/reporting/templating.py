@@ -20,7 +20,7 @@ _BEFORE_UNIT = re.compile(
 _INSIDE_UNIT = re.compile(
     r"(?<=[\d⁰¹²³⁴⁵⁶⁷⁸⁹]\u00a0N) (?=m\b)|(?<=\(N) (?=m\b)|(?<=[\u00a0(]N²) (?=m²)|(?<=m²) (?=s\b)"
 )
-_PART_OF_NAME = re.compile(r"(?<=[_=/])|(?<=\.)(?!\d)")
+_PART_OF_NAME = re.compile(r"(?<=[_=/,(])|(?<=\.)(?!\d)")
 _SIZE = re.compile(r'viewBox="[-\d.]+ [-\d.]+ ([\d.]+) ([\d.]+)"')
 
 

@@ -9,6 +9,7 @@ from importlib.util import find_spec
 import pytest
 import typst
 from support.patience import PATIENCE
+from support.pdf_text import letter_sizes
 
 from runner.base.paths import examples_dir
 
@@ -16,6 +17,7 @@ CLASSES = ["[conference]{IEEEtran}", "[journal]{IEEEtran}", "[5p,twocolumn]{elsa
 RUN = ("robot=macro", "controller=computed_torque,operational_space", "trajectory=quintic", "noise=thesis",
        "repetitions=10")  # fmt: skip
 TABLE = ("--by", "controller", "--metrics", "max_tracking_error,peak_torque", "--width", "single")
+SMALLEST = 7.0  # pt, of a letter on a printed page
 
 pytestmark = pytest.mark.slow
 
@@ -51,8 +53,8 @@ def test_latex_sets_figure_and_table_within_the_column(exported, kind):
     (folder / "paper.tex").write_text(
         rf"""\documentclass{kind}
 \usepackage{{booktabs}}\usepackage{{siunitx}}\usepackage{{graphicx}}
-\begin{{document}}
-\begin{{table}}\centering\caption{{x}}\input{{table}}\end{{table}}
+\begin{{document}}\pagestyle{{empty}}
+\begin{{table}}\centering\caption{{X}}\input{{table}}\end{{table}}
 {drawn}
 Text.
 \end{{document}}
@@ -71,6 +73,10 @@ Text.
         [program("pdftotext"), "-bbox-layout", "paper.pdf", "-"], cwd=folder, capture_output=True, text=True, check=True
     ).stdout
     assert "operational_space" in boxes
+    sizes = list(letter_sizes((folder / "paper.pdf").read_bytes()))
+    assert {letter for letter, size in sizes if size < SMALLEST} == set()
+    drawings = [list(letter_sizes((folder / "figures" / f"{name}.pdf").read_bytes())) for name in figures]
+    assert sum(len(letters) > 50 for letters in drawings) > 5  # letters of figures are text, which is measured
 
 
 def test_typst_sets_the_table_of_a_two_column_page_without_overprinting(exported):

@@ -68,10 +68,11 @@ def comparison_document(sides: Sequence[Measurements], wanted: Sequence[str] = (
         ]
     lines = [text for one in found for text in sentences(one.answers)[:1]]
     lines += [one.differences.in_words(one.pairs.first, one.pairs.second) for one in found]
+    shared = [text for text in sides[0].fixed if all(text in side.fixed for side in sides)]
     lines += [NOISE_ALONE] if any(noise_alone([one.pairs.a, one.pairs.b]) for one in found) else []
     return Document(
         title=(len(found) == 1 and found[0].differences.question("A", "B")) or f"{len(sides)} sweeps compared",
-        subtitle=literal(", ".join(f"{side.name}: {side.folder.resolve().name}" for side in sides)),
+        subtitle=literal(", ".join(shared or [f"{side.name}: {side.folder.resolve().name}" for side in sides])),
         abstract=literal("\n".join(map(one_line, lines))),
         sections=[*compared, _sides(sides), _caveats(sides), _made(sides)],
         date=max(max(side.provenance["made on"]) for side in sides),

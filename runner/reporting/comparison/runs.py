@@ -12,7 +12,7 @@ from runner.reporting.document import Block, Document, Notice, Section, Table
 from runner.reporting.markup import literal
 from runner.reporting.metric_titles import title, whole_metrics
 from runner.reporting.overlaid_runs import Level, overlaid
-from runner.reporting.run_report import config_blocks, provenance, run_blocks, run_name
+from runner.reporting.run_report import changed_keys, config_blocks, provenance, run_blocks, run_name
 from runner.reporting.sentences import sentences, short_table
 from runner.reporting.spec_blocks import spec_of_several
 from runner.reporting.table import numbers
@@ -40,7 +40,9 @@ def runs_document(runs: Sequence[Run]) -> Document:
                for name, run in zip(names, runs, strict=True) if run.caveats]  # fmt: skip
     lines += [f"May mislead: {'; '.join(caveats)}."] if caveats else []
     details = [
-        Section(f"{name}: {run_name(run)}", [*run_blocks(run), *config_blocks(run), provenance([run])])
+        Section(
+            f"{name}: {run_name(run)}", [*run_blocks(run), *config_blocks(run, changed_keys(run)), provenance([run])]
+        )
         for name, run in zip(names, runs, strict=True)
     ]
     return Document(

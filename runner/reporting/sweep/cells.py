@@ -7,6 +7,7 @@ from itertools import combinations
 import numpy as np
 from numpy.typing import NDArray
 
+from runner.base.quantities import with_powers
 from runner.reporting.charts.figure import spaced_indices
 from runner.reporting.document import Block, Notice, Origin, Section, Table, Text
 from runner.reporting.markup import literal
@@ -99,7 +100,7 @@ def failures_section(subject: Subject) -> Section:
         rows = [row for axis in subject.axes for row in _by_level(axis, failed)]
         blocks.append(Table("Failed runs by axis.", ["axis", "value", *numbers("failed")], rows))
     rows = [
-        [measurements.hashes[cell][:8], subject.cell_name(cell), measurements.failures[cell]]
+        [measurements.hashes[cell][:8], subject.cell_name(cell), with_powers(measurements.failures[cell])]
         for cell in np.flatnonzero(failed).tolist()
     ]
     blocks.append(failed_table("runs", ["run", "cell", "failure"], rows))

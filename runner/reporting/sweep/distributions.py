@@ -22,6 +22,7 @@ from runner.store.axes import Axis
 from runner.sweeps.question import SEED, find_question, is_condition
 
 _MOST_LEVELS, _MOST_CELLS = 6, 24  # whose curves are shown
+_MOST_NAMED = 8  # cells below an axis
 
 
 def section(subject: Subject) -> Section:
@@ -127,9 +128,13 @@ def _distribution(values: FloatArray) -> tuple[FloatArray, FloatArray]:
 
 
 def _in_order(subject: Subject, metric: str) -> Curves:
-    ranked = subject.ranked
-    rank = np.array(spaced_indices(len(ranked), POINTS), dtype=float) + 1.0
-    ranked = [ranked[place] for place in spaced_indices(len(ranked), POINTS)]
+    places = spaced_indices(len(subject.ranked), POINTS)
+    ranked = [subject.ranked[place] for place in places]
+    x, across, names = np.array(places, dtype=float) + 1.0, "rank of the cell, by median", []
+    if len(ranked) <= _MOST_NAMED:
+        swept = [axis for axis in subject.axes if len(axis.values) > 1]
+        x, across = x - 1.0, "cell: " + ", ".join(axis.name for axis in swept)
+        names = [", ".join(axis.text(int(axis.level[cell])) for axis in swept) for cell in ranked]
     values = subject.measurements.values[metric]
     low, high = np.full(len(ranked), np.nan), np.full(len(ranked), np.nan)
     for place, cell in enumerate(ranked):
@@ -138,11 +143,11 @@ def _in_order(subject: Subject, metric: str) -> Curves:
     low, high = (np.where(np.isfinite(edge), edge, np.nan) for edge in (low, high))
     medians = subject.medians[metric][ranked]
     hints, runs = subject.hints(ranked), subject.hashes(ranked)
-    series = Series("", rank, medians, "points_line", low, high, hints=hints, runs=runs)
-    panel = Panel("", "cells in order", subject.label(metric), [series], y_log=spans_decades(values.ravel()))
+    series = Series("", x, medians, "points" if names else "points_line", low, high, hints=hints, runs=runs)
+    panel = Panel("", across, subject.label(metric), [series], y_log=spans_decades(values.ravel()), x_names=names)
     return Curves(
-        "Median of each cell in order; shaded the range of its repetitions, from their 5 % to their 95 % quantile. "
-        + QUANTILE_RULE,
+        "Median of each cell, in ascending order, and the range of its repetitions from their 5 % to their 95 % "
+        f"quantile. {QUANTILE_RULE}",
         [panel],
         columns=1,
     )

@@ -41,7 +41,7 @@ def describe_shared_variation(subject: Subject) -> list[str]:
     found = subject.effects[metric].shared
     if found is None or found < _MOST_OF_IT:
         return []
-    return [f"What each repetition draws makes {_percent(found)} of the spread of the {title(metric)}."]
+    return [f"The draws of the repetitions explain {_percent(found)} of the spread of the {title(metric)}."]
 
 
 def _table(analyses: dict[str, EffectAnalysis]) -> Table:
@@ -83,7 +83,7 @@ def cells_with_intervals(subject: Subject, metric: str) -> Curves | None:
     """Return the median of each cell over one axis, a curve for each value of the other axis if there are two.
 
     Returns:
-        The figure; None without a point, or with more curves or cells than a reader can distinguish.
+        The figure; None without points at two values, or with more curves or cells than a reader can distinguish.
     """
     # Along the axis with more values, and rather along numbers than along names.
     along, *other = sorted(subject.axes, key=lambda axis: (axis.numbers is None, -len(axis.values)))
@@ -106,7 +106,8 @@ def cells_with_intervals(subject: Subject, metric: str) -> Curves | None:
             beside = _APART * (group - (count - 1) / 2)
             curve = replace(curve, style="points", shift=np.full(x.size, beside))
         curves.append(curve)
-    if not any(np.isfinite(series.y).any() for series in curves):
+    shown = {float(x) for series in curves for x in series.x[np.isfinite(series.y)]}
+    if len(shown) < min(2, len(along.values)):  # at one value there is nothing to see along the axis
         return None
     panel = axis_panel("", along, subject.label(metric), curves, np.concatenate([series.y for series in curves]))
     sizes = sorted({subject.measurements.of_cell(metric, cell).size for cell in range(len(groups))})

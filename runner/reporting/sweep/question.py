@@ -151,14 +151,17 @@ def pairs_section(answers: Sequence[Answer]) -> Section | None:
     sections = []
     for metric in dict.fromkeys(one.metric for one in answers):
         found = [one for one in answers if one.metric == metric]
-        kept = [one for one in found if one.is_answerable]
+        lost = sum(one.is_lost for one in found)
+        kept = [one for one in found if one.is_answerable and not one.is_lost]
         shown = [kept[place] for place in spaced_indices(len(kept), _MOST_PAIRS)]
         fewer = f" ({len(shown)} of {len(kept)}, spread evenly)" if len(shown) < len(kept) else ""
         rows = [[one.place, ", ".join(one.names), *one.cells] for one in shown]
         caption = f"{capital(title(metric))}, pooled where that describes all conditions, and by condition{fewer}."
         header = ["at", "compared", *numbers(*HEADER), "the second is"]
         blocks: list[Block] = [Table(literal(caption), header, rows)] if rows else []
-        if len(kept) < len(found):
+        if lost:
+            blocks.append(Text(f"{lost} comparison{' has' if lost == 1 else 's have'} no value in either."))
+        if len(kept) + lost < len(found):
             blocks.append(Text(literal(unanswerable([one for one in found if not one.is_answerable]))))
         sections.append(Section(capital(title(metric)), blocks))
     text = f"The cells of a pair differ only in one axis, and in what goes with it (Also differs). {EXPLAINED}"

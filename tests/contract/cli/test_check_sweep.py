@@ -22,7 +22,7 @@ def learned(cli, outputs, tmp_path):
     path = tmp_path / "baseline.yaml"
     ending = cli("check", folder, "--save-baseline", path)
     assert ending.code == 0
-    assert ending.out == f"saved: {_count(path)} metrics of {folder} are now in {path}\n"
+    assert ending.out == f"saved: {_count(path)} metrics of {folder} in {path}\n"
     return folder, path
 
 
@@ -250,7 +250,7 @@ def test_a_file_of_bands_keeps_its_metrics_and_holds_the_seeds(cli, outputs, tmp
     path = tmp_path / "bands.yaml"
     path.write_text("# Own\nschema: 1\nmetrics:\n  energy: {min: 0, max: 1e-3, reason: the move}\n")
     assert cli("check", sweep, "--baseline", path).code == 1
-    assert cli("check", sweep, "--save-baseline", path).out == f"saved: 1 metrics of {sweep} are now in {path}\n"
+    assert cli("check", sweep, "--save-baseline", path).out == f"saved: 1 metric of {sweep} in {path}\n"
     assert cli("check", sweep, "--baseline", path).code == 0
     (name,) = yaml.safe_load(path.read_text())["metrics"]
     assert name == "energy"

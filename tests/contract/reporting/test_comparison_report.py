@@ -54,6 +54,13 @@ def test_the_first_screen_says_what_differs_how_many_cells_match_and_by_how_much
     assert document.abstract.startswith("Rms tracking error: 2.5 % smaller with A than with B (10.01 m): by 0.25 m in")
 
 
+def test_below_the_title_is_what_the_sweeps_share(document):
+    assert document.subtitle == "A: A, B: B"  # they share no typed value
+    axes = {**LAWS, "trajectory": ["quintic"]}
+    sides = [side(name, axes, lambda *cell: error(*cell[:2])) for name in "AB"]
+    assert comparison_document(sides).subtitle == "trajectory=quintic"
+
+
 def test_a_confounded_comparison_is_marked_before_any_number(document):
     assert parts(document.sections, Notice) == []
     sides = pair(noise={"position": 1e-4}, plant={"step": 1e-3})

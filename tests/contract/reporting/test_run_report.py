@@ -9,7 +9,7 @@ from fixtures.stored import RUNS
 from support.engines import ASKED
 
 from runner.base.quantities import quantity, with_powers
-from runner.reporting import outline
+from runner.reporting import figures, outline
 from runner.reporting.comparison.runs import runs_document
 from runner.reporting.document import Code, Curves, Notice, Playback, Provenance, Table, Text
 from runner.reporting.mathml import faulty
@@ -90,6 +90,20 @@ def test_a_shaper_and_a_notch_stand_below_the_title(tmp_path):
     assert document.subtitle == "no torque limits, noise none, input shaper ZVD, a notch in the torques"
 
 
+@pytest.mark.parametrize(
+    ("noise", "named"),
+    [
+        (("noise.position=1mrad",), "no torque limits, noise.position=0.001"),
+        (("noise=thesis",), "no torque limits, noise thesis"),
+        (("noise=thesis", "noise.position=2mrad"), "no torque limits, noise thesis, noise.position=0.002"),
+        (("torque_limits=thesis", "torque_limits.max=20"), "torque limits thesis, noise none, torque_limits.max=20.0"),
+    ],
+)
+def test_noise_that_was_set_is_not_called_none(tmp_path, noise, named):
+    made = run("robot=macro", "trajectory=quintic", *noise, "duration=0.05", f"outputs={tmp_path}")
+    assert run_document(made).subtitle == named
+
+
 def test_steps_of_a_plant_stand_together_and_seeds_in_a_row_are_a_range(finished):
     def with_seed(seed, step):
         config, record = finished.config, {**finished.provenance, "seed": seed, "plant_step": step}
@@ -102,9 +116,11 @@ def test_steps_of_a_plant_stand_together_and_seeds_in_a_row_are_a_range(finished
     assert rows["plant"] == f"{PLANT[ASKED.removeprefix('plant=')]} in steps of 0.25 ms, 1 ms"
 
 
-def test_a_failed_run_shows_its_last_moments_on_axes_that_its_divergence_leaves(diverged):
+def test_a_failed_run_shows_its_last_moments_on_axes_that_its_divergence_leaves(diverged, monkeypatch):
     time = diverged.failure_record["time"]
-    last, whole, *_ = [block for block in blocks_of(run_document(diverged), Curves) if "repetition 0" in block.caption]
+    monkeypatch.setattr(figures, "_LAST_ROWS", 4)
+    last, whole = [block for block in blocks_of(run_document(diverged), Curves) if "repetition 0" in block.caption]
+    assert whole.panels[0].x_range == (0.0, time)
     for panel, same in zip(last.panels, whole.panels, strict=True):
         start, end = panel.x_range
         assert end == time
@@ -113,6 +129,11 @@ def test_a_failed_run_shows_its_last_moments_on_axes_that_its_divergence_leaves(
         assert panel.y_range == (-panel.y_range[1], pytest.approx(4.0 * np.median(shown[shown > 0.0])))
     torque = np.concatenate([each.y for each in last.panels[0].series])
     assert np.nanmax(np.abs(torque)) > last.panels[0].y_range[1]
+
+
+def test_a_run_no_longer_than_its_last_moments_is_drawn_once(diverged):
+    (whole,) = [block for block in blocks_of(run_document(diverged), Curves) if "repetition 0" in block.caption]
+    assert "up to the failure, repetition 0. A curve that leaves the axes diverges." in whole.caption
 
 
 def test_a_failed_run_says_when_and_where(diverged):

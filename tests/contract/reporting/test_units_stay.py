@@ -1,9 +1,10 @@
 """Numbers on pages: never torn, never parted from their unit, one map with its answers."""
 
+import numpy as np
 import pytest
 
 from runner.reporting.answer_map import AnswerMap, MapCell
-from runner.reporting.document import Document, Section, Text
+from runner.reporting.document import Curves, Document, Notice, Panel, Section, Series, Text
 from runner.reporting.render import render_html, render_pdf
 from runner.reporting.templating import bind_units, name_parts
 
@@ -24,6 +25,7 @@ def test_a_number_stays_with_its_unit(text, bound):
 
 def test_names_break_behind_their_parts_and_numbers_stay_whole():
     assert name_parts("noise.position=0.0001") == ["noise.", "position=", "0.0001"]
+    assert name_parts("k=tag(log,interval(2,80))") == ["k=", "tag(", "log,", "interval(", "2,", "80))"]
     assert name_parts("a_b<c") == ["a_", "b&lt;c"]
 
 
@@ -31,6 +33,16 @@ def test_a_page_keeps_numbers_with_units():
     page = render_html(Document("Title", "", "An error of 0.35 mm.", [], "", key_numbers=[("e", "4 mm to 8.7 mm", "")]))
     assert "0.35\u00a0mm" in page
     assert "<strong>4\u00a0mm to 8.7\u00a0mm</strong>" in page
+
+
+def test_titles_keep_numbers_with_units():
+    panels = [Panel("at 10 mm", "t (s)", "y (m)", [Series("", np.zeros(2), np.zeros(2))])]
+    notice = Notice("warning", "A limit of 50 N m", "")
+    document = Document("Within 2 mm", "noise 3 mm", "", [Section("By 4 mm", [notice, Curves("", panels, 1)])], "")
+    page = render_html(document)
+    page = page[page.index("<h1") :]
+    for text in ("Within 2\u00a0mm", "noise 3\u00a0mm", "By 4\u00a0mm", "A limit of 50\u00a0N\u00a0m", "at 10\u00a0mm"):
+        assert text in page
 
 
 def test_the_map_of_answers_is_on_the_first_screen_of_page_and_paper():

@@ -40,6 +40,15 @@ def test_no_fit_is_called_what_the_thesis_ran():
     assert [name for name, text in texts.items() if STEP.search(text)] == []
 
 
+@pytest.mark.parametrize("study", FIRST)
+def test_no_caption_of_curves_names_a_unit_of_length(study):
+    """The axis has the unit that fits its values, often mm or µm."""
+    texts = "\n".join(path.read_text(encoding="utf-8") for path in load_study(study).folder.rglob("*.md"))
+    captions = re.findall(r'curves\("([^"]*)"', texts)
+    assert captions or study != "thesis"
+    assert [caption for caption in captions if re.search(r"\bin (?:m|mm|µm)\b", caption)] == []
+
+
 @pytest.mark.parametrize(
     ("title", "wrong"),
     [

@@ -2,6 +2,7 @@
 
 from argparse import Namespace
 from collections.abc import Callable, Mapping
+from pathlib import Path
 
 import numpy as np
 import pytest
@@ -9,6 +10,7 @@ from fixtures.studies import Made
 from scipy.special import ellipk
 from support.precision_runs import error
 from support.study_plans import cut
+from support.thin_plans import make_runs
 
 from runner.config.compose.compose import compose
 from runner.config.validation import validate
@@ -16,6 +18,7 @@ from runner.papers.commands.reproduce import _chosen
 from runner.papers.studies.precision import measure, tried
 from runner.papers.studies.precision.exact import Adaptive, Collocation, energy_drift
 from runner.papers.studies.precision.figures import large_enough
+from runner.papers.study.expected_caveats import unexpected_caveats
 from runner.papers.study.results import MissingError
 from runner.papers.study.study import load_study
 from runner.plants.rk4 import Rk4
@@ -51,6 +54,19 @@ def test_it_is_not_made_with_all_studies() -> None:
     assert "precision" not in {
         study.name for study in _chosen(Namespace(study="all", code=False, profile="", parts=())) if study is not None
     }
+
+
+@pytest.mark.costs(6)
+def test_the_caveats_of_whole_runs_are_expected(shared_store: Path) -> None:
+    """The recorded runs are cut to a moment, in which no joint is fast."""
+    largest = {}
+    for name, job in STUDY.jobs().items():
+        case, arm, plant, _ = name.split("/")
+        if plant == measure.PLANT:
+            largest.setdefault(f"{case}/{arm}", (name, job))
+    runs = make_runs(shared_store, dict(largest.values()))
+    assert {caveat["rule"] for run in runs.values() for caveat in run.caveats} == {"did_not_follow", "joint_speed"}
+    assert unexpected_caveats(runs, STUDY.expected) == []
 
 
 @pytest.mark.parametrize("way", ["adaptive", "collocation"])

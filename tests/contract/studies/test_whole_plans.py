@@ -10,6 +10,7 @@ from support.study_plans import RECORDED, meca500_calibrations, meca500_jobs, pl
 from support.thin_plans import make_calibrations, make_runs
 
 from runner.papers.study.check import never_failing
+from runner.papers.study.expected_caveats import unexpected_caveats
 from runner.papers.study.measured import findings
 from runner.papers.study.study import load_study
 from runner.reporting.mathml import faulty
@@ -46,6 +47,7 @@ def test_every_finding_holds(shared_store: Path, study: str) -> None:
     held = [found for _, found in findings(made.document)]
     assert [found.text for found in held if not found.holds] == []
     assert len(held) == FINDINGS[study]
+    assert unexpected_caveats(made.runs, made.study.expected) == []
     assert never_failing_in(made) == []
     assert faulty(made.document) == []
 

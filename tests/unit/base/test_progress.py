@@ -216,16 +216,54 @@ def test_off_a_terminal_nothing_is_shown():
     assert stream.getvalue() == ""
 
 
-def test_a_notebook_shows_it_though_it_is_no_terminal(monkeypatch):
-    kernel = SimpleNamespace(config={"IPKernelApp": {}})
-    monkeypatch.setitem(sys.modules, "IPython", SimpleNamespace(get_ipython=lambda: kernel))
-    stream = io.StringIO()
-    with contextlib.redirect_stderr(stream), progress._terminal() as found:
-        assert found is stream
-    with contextlib.redirect_stderr(stream), progress.show_progress():
-        assert sys.stderr is not stream
-    kernel.config = {}  # IPython in a shell
-    with contextlib.redirect_stderr(stream), progress._terminal() as found:
+class Cell:
+    """The outputs of a notebook's cell, as a kernel publishes them and an executed notebook keeps them."""
+
+    def __init__(self):
+        self.outputs, self.seen = {}, []
+
+    def publish(self, data, transient, update):
+        name = transient["display_id"]
+        assert update == (name in self.outputs)  # an update of an unknown output is lost
+        self.outputs[name] = data
+        self.seen.append(data["text/plain"])
+
+
+@pytest.fixture
+def kernel(monkeypatch):
+    """A Jupyter kernel, whose standard error is not a terminal."""
+    shell = SimpleNamespace(config={"IPKernelApp": {}}, display_pub=Cell())
+    monkeypatch.setitem(sys.modules, "IPython", SimpleNamespace(get_ipython=lambda: shell))
+    with contextlib.redirect_stderr(io.StringIO()):
+        yield shell
+
+
+def test_a_notebook_shows_it_in_one_output_that_is_empty_at_the_end(kernel, monkeypatch):
+    monkeypatch.setattr(progress, "_EVERY", 3600.0)
+    cell = kernel.display_pub
+    with progress.show_progress():
+        progress.begin("a", 4, "runs")
+        for _ in range(3):
+            progress.step()
+            progress._display.draw()
+        print("a warning", file=sys.stderr)
+        progress.begin("b")
+        progress._display.draw()
+    shares = [text for text in cell.seen if text]
+    assert [text.partition("|")[0] for text in shares] == ["a:   0%", "a:  25%", "a:  50%", "a:  75%", "b [00:00]"]
+    assert list(cell.outputs.values()) == [{"text/plain": ""}]
+
+
+def test_a_notebook_keeps_no_output_of_short_work(kernel):
+    with progress.show_progress():
+        progress.begin("a", 4, "runs")
+        progress.step()
+    assert kernel.display_pub.outputs == {}
+
+
+def test_ipython_in_a_shell_is_not_a_notebook(kernel):
+    kernel.config = {}
+    with progress._terminal() as found:
         assert found is None
 
 

@@ -12,11 +12,12 @@ from runner.reporting.overlaid_runs import Level, overlaid
 T = np.linspace(0.0, 1.0, 201)
 
 
-def run(error, t=T, joints=("q1",), torque=0.0):
+def run(error, t=T, joints=("q1",), torque=0.0, status="ok"):
     """Return a run as the curves read it: a tip error along x, and the torque of each joint."""
     values = np.stack([error * np.ones(len(t)), np.zeros(len(t)), np.zeros(len(t))], axis=1)
     return SimpleNamespace(
         t=t,
+        status=status,
         vector=lambda name: values,
         joints=lambda name: np.full((len(t), len(joints)), torque),
         provenance={"joints": list(joints), "commit": "", "command": "runner -m ..."},
@@ -66,6 +67,20 @@ def test_noisy_curves_have_a_panel_each_with_one_range(noise, panels):
         assert [panel.title for panel in curves.panels] == ["Torque of q1", "Tip error, a", "Tip error, b"]
         assert parted[0].y_range == parted[1].y_range
         assert [panel.has_legend for panel in curves.panels] == [True, False, False]
+
+
+@pytest.mark.parametrize("noise", [0.0, 1.0])
+def test_a_diverging_run_does_not_flatten_the_others(noise):
+    scatter = np.abs(1.0 + noise * np.random.default_rng(0).normal(size=(2, len(T))) + T)
+    diverging = scatter[1] * np.exp(60.0 * T)
+    failed = Level("b", [run(diverging, torque=1e20, status="failed")], 1)
+    curves, _ = overlaid([Level("a", [run(scatter[0], torque=1.0 + T[:, None])], 0), failed])
+    for panel in curves.panels:
+        highest = 2.0 if panel.title.startswith("Torque") else scatter[0].max()
+        assert highest < panel.y_range[1] < 1.1 * highest
+    assert curves.caption.endswith("A curve that leaves the axes diverges.")
+    both = [Level(name, [run(diverging, status="failed")], place) for place, name in enumerate("ab")]
+    assert "leaves the axes" not in overlaid(both)[0].caption
 
 
 def test_many_noisy_levels_stay_in_the_same_axes():

@@ -216,9 +216,20 @@ def test_what_too_few_pairs_cannot_answer_is_left_out_with_one_line():
     axes = {"noise.position": [1e-4 * place for place in range(1, 8)], "controller": ["a", "b"]}
     answers = find_answers(sweep(lambda noise, law: 10.0 + law + 0.01 * drawn(8, law, noise), axes=axes))
     assert sentences(answers) == ["8 pairs are too few for 8 comparisons: 9 would do."]
-    assert short_table(answers)[1] == [["largest tracking error", "7 conditions", "", "", "not shown in 7"]]
+    assert short_table(answers)[1] == [
+        ["largest tracking error", "7 conditions", "", "", "no difference shown in 7 of 7 conditions"]
+    ]
     (part,) = pairs_section(answers).sections
     assert [block.text for block in part.blocks] == ["8 comparisons have too few pairs (8): 9 would do."]
+
+
+def test_comparisons_without_any_value_are_counted_and_have_no_row():
+    axes = {"noise.position": [1e-4, 1e-3], "controller": ["a", "b"]}
+    answers = find_answers(sweep(lambda noise, law: 10.0 + law + drawn(8, law) + (np.inf if noise else 0.0), axes=axes))
+    (part,) = pairs_section(answers).sections
+    table, text = part.blocks
+    assert "no value in either" not in str(table.rows)
+    assert text.text == "1 comparison has no value in either."
 
 
 def test_of_several_values_the_first_six_are_told():

@@ -88,7 +88,7 @@ def test_what_seeds_share_is_no_scatter_between_cells():
     assert "share the random draws of a repetition, which make 96 % of the variation of rms" in text
     assert "p = " not in text
     (told,) = effects.describe_shared_variation(subject)
-    assert told == "What each repetition draws makes 96 % of the spread of the rms."
+    assert told == "The draws of the repetitions explain 96 % of the spread of the rms."
     own = replace(subject.measurements, seeds=range(12))
     assert "share the random draws" not in blocks(effects.section(choose(own)), Text)[0].text
 
@@ -179,11 +179,15 @@ def test_cells_stand_in_order():
     (panel,) = distributions.section(subject).blocks[1].panels
     assert (np.diff(panel.series[0].y) >= 0).all()
     assert panel.series[0].runs == subject.hashes(subject.ranked)
+    assert (panel.x_label, panel.x_names) == ("cell: controller.period", ["0.04", "0.02", "0.01"])
+    assert panel.series[0].x.tolist() == [0.0, 1.0, 2.0]
     assert len(distributions.section(two_axes()).blocks) == 1  # noise is a condition, which no designer orders
 
 
 def test_a_figure_without_a_point_is_not_drawn():
     assert blocks(effects.section(two_axes(failed=range(12))), Curves) == []
+    assert blocks(effects.section(two_axes(failed=[*range(1, 4), *range(5, 8), *range(9, 12)])), Curves) == []
+    assert blocks(effects.section(two_axes(failed=range(2, 12))), Curves) != []
 
 
 def test_failed_runs_are_listed_with_where_they_lie():
@@ -198,6 +202,9 @@ def test_failed_runs_are_listed_with_where_they_lie():
     ]
     assert ["torque_limits.max", "20", "2 of 3"] in by_axis.rows
     assert ["noise.position", "0.001", "1 of 4"] in by_axis.rows
+    subject = two_axes(failed=[0, 4])
+    subject.measurements.failures[0] = "diverged: not finite or above 1e+06 rad/s"
+    assert cells.failures_section(subject).blocks[2].rows[0][2] == "diverged: not finite or above 1·10⁶ rad/s"
     assert [row[1:] for row in runs.rows] == [
         [f"noise.position={noise}, torque_limits.max=20", "diverged, at once"] for noise in ("0.0001", "0.001")
     ]

@@ -73,7 +73,9 @@ def test_figures_have_points_that_can_be_told_apart(subject):
 def test_cells_in_order_are_thinned_with_both_ends():
     gains = {"controller.natural_frequency": list(map(float, range(1, SEEDS + 1)))}
     many = choose(measurements(gains, {"rms": lambda gain: [gain]}, failed=range(0, SEEDS, 20)))
-    (series,) = of_kind(distributions.section(many), Curves)[-1].panels[0].series
+    (panel,) = of_kind(distributions.section(many), Curves)[-1].panels
+    (series,) = panel.series
+    assert (panel.x_label, panel.x_names) == ("rank of the cell, by median", [])
     assert series.x.size <= POINTS
     assert (series.x[0], series.x[-1]) == (1.0, 0.95 * SEEDS)  # every twentieth failed
 

@@ -20,8 +20,8 @@ OWN = {"pd", "spring", "my_panda", "lbr_iiwa", "line", *(path.stem for path in (
 OWN_KEYS = {"controller.kp", "controller.kd"}
 NO_KEYS = {"robot.model"}
 """Attributes in Python that look like keys."""
-OTHER_OPTIONS = {"--enforce-costs", "--experimental-rerun", "--help"}
-"""Options of pytest and Hydra."""
+OTHER_OPTIONS = {"--enforce-costs", "--exclude", "--experimental-rerun", "--help"}
+"""Options of pytest, pip and Hydra."""
 MINUTES = ("runner reproduce", "runner tune", "runner study diff", "runner report latest")
 """Commands between fences, which no test follows."""
 TOP = "runner|tests|conf|docs|examples|tools|robots|bench|\\.ci"
