@@ -172,7 +172,7 @@ class Sweep(store.Sweep):
         asked = by or getattr(find_question(self._axes, self.question), "name", "")
         if not asked:
             raise RunnerError(f"by: all axes are conditions. Allowed: {', '.join(axis.name for axis in self._axes)}.")
-        return comparison(compare_levels(self._measurements, asked, inside, names if metrics else ()))
+        return comparison(compare_levels(self._measurements, asked, inside, names if metrics else ()), [self.folder])
 
     @public
     def repetitions_needed(self, share: float) -> "pd.DataFrame":

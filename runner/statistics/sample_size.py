@@ -17,7 +17,7 @@ _NORMAL = NormalDist()
 
 
 def count_pairs(deviation: float, freedom: int, difference: float, level: float, least: float = 0.0) -> float:
-    """Return the number of pairs that show a difference; it is no whole number, and infinite if no number does.
+    """Return the number of pairs that show a difference, not rounded; infinite if no number does.
 
     Args:
         deviation: Standard deviation of the differences of some pairs.

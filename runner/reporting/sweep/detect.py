@@ -30,7 +30,7 @@ class Needed:
         wanted: The difference or the probability, in words.
         repetitions: Their number; None if no number does, or if it cannot be estimated.
         ends: The numbers that both ends of the 95 % interval of the pilot's scatter need; None without it.
-        reason: What the number follows from, or the reason why there is none; empty for the scatter alone.
+        reason: What the number follows from besides the scatter, or the reason why there is none; may be empty.
         metric: Name of the metric; empty for a bound.
     """
 

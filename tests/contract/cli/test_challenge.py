@@ -1,5 +1,6 @@
 """`runner challenge`: its question, list, budget, continuation, page and check, and bad input."""
 
+import re
 import shutil
 
 import pytest
@@ -223,6 +224,45 @@ def test_a_table_of_your_own(tmp_path, text, said):
 
 def test_conclusions_stand_beside_their_scope(cli, sweep, ended):
     words = ("compare", sweep, "--by", "controller.natural_frequency")
-    assert f"Not challenged: `runner challenge {sweep}` tries other choices." in cli(*words).out
+    said = rf"Not challenged: `runner challenge {sweep}` \(about \d+ s\) tries other choices\."
+    assert re.search(said, cli(*words).out)
+    assert re.search(said, runner.open_sweep(sweep).compare(by="controller.natural_frequency").summary)
     shutil.copytree(ended.folder, sweep.parent.parent / "challenges" / ended.folder.name)
     assert "Challenged: it holds for all tried numerical choices; it ends or turns with" in cli(*words).out
+
+
+GAIN = "controller.natural_frequency"
+
+
+@pytest.mark.costs(6)
+@pytest.mark.parametrize("kind", ["two runs", "two sweeps", "tuning"])
+def test_other_subjects_say_their_scope_beside_every_conclusion(cli, kind):
+    """Command line, page and Python name the command; after the challenge they say its sentence."""
+    if kind == "tuning":
+        search = {GAIN.replace(".", "__"): (10.0, 20.0), "minimize": "max_tracking_error"}
+        folders = [runner.tune(*TASK, **search, trials=2, workers=0).folder]
+    elif kind == "two runs":
+        folders = [runner.run(*TASK, f"{GAIN}={value}").folder for value in (20, 40)]
+    else:
+        folders = [runner.sweep(*TASK, f"{GAIN}={value}", "robot=macro", workers=0).folder for value in (20, 40)]
+    command = f"runner challenge {' '.join(map(str, folders))}"
+
+    def said():
+        abstract = compose_report(folders)[0].abstract
+        if kind == "tuning":
+            return abstract, abstract
+        return abstract, cli("compare", *folders).out, runner.compare(*folders).summary
+
+    page, *others = said()
+    assert page.count("Not challenged: the command runner challenge") == 1
+    assert all(text.count(f"`{command}` (about") == 1 for text in others if kind != "tuning")
+    ending = cli("challenge", *folders, *FEW, "--budget", 1, "-j", 1)
+    assert ending.code == 0
+    assert "Settled numerically (a step 5 times finer)." in ending.out
+    assert all(text.count("Challenged: it holds for all tried numerical choices") == 1 for text in said())
+
+
+def test_without_a_conclusion_there_is_no_scope(cli):
+    folders = [runner.run(*TASK[:-1], "repetitions=2", f"seed={seed}").folder for seed in (0, 1)]
+    assert "hallenge" not in cli("compare", *folders).out
+    assert "hallenge" not in compose_report(folders)[0].abstract
