@@ -2,17 +2,20 @@
 
 import re
 import shutil
+from collections import Counter
 
 import pytest
 from support.engines import ASKED
 
 import runner
+from runner.base.dotted_keys import split_override
 from runner.reporting.challenge.question import read_question
 from runner.reporting.challenge.words import TITLES, scope_sentences
 from runner.reporting.formulas import faulty
 from runner.reporting.stored import compose_report
 from runner.statistics.scope import first_pairs
 from runner.sweeps.challenge.case import check_case
+from runner.sweeps.challenge.combinations import combine
 from runner.sweeps.challenge.families import FAMILIES
 from runner.sweeps.challenge.question import CLASSES
 from runner.sweeps.challenge.stored import open_challenge
@@ -20,7 +23,8 @@ from runner.sweeps.challenge.table import change_values, list_variations, read_v
 
 TASK = ("robot=macro", "plant=rk4", ASKED, "trajectory=quintic", "trajectory.duration=0.5", "duration=0.6",
         "noise=thesis", "repetitions=6")  # fmt: skip
-GAINS = "controller.natural_frequency=20,40"
+GAIN = "controller.natural_frequency"
+GAINS = f"{GAIN}=20,40"
 FEW = ("--without", "engine,goal,direction,velocity,noise_kind,torque_limit,payload,friction,delay,period,model_error")
 LIST = ("--vary", "duration=0.5,2", "--vary", "gain_of_one=0.25,0.5", "--vary", "gain=0.5")
 
@@ -74,6 +78,36 @@ def test_words_of_a_difference_that_gains_make(ended):
     assert found["a motion of 1 s"].word in ("holds", "holds, weaker")
 
 
+def test_combinations_are_described_and_count_in_no_class(ended):
+    assert {one.pairs for one in ended.combined} == {ended.fresh.pairs}
+    too_fast = [one for one in ended.combined if "a motion of 0.25 s" in one.labels]  # neither gain follows it
+    others = [one for one in ended.combined if one not in too_fast]
+    assert too_fast
+    assert others
+    assert {one.effect for one in too_fast} == {None}
+    assert all(one.effect < -0.02 for one in others)  # twice the frequency follows better at each noise
+    said = next(text for text in ended.sentences if "combinations" in text)
+    assert said.startswith(f"{len(ended.combined)} combinations of two to four changes (seed 1), not tested: ")
+    assert f"the same sign in {len(others)}, within 2 % in 0, the other sign in 0 (" in said
+    assert said.endswith(f" %), a side does not work in {len(too_fast)}.")
+    assert len({frozenset(one.labels) for one in ended.combined}) == len(ended.combined)
+
+
+def test_combinations_are_balanced_and_never_set_a_key_twice(sweep):
+    found, _ = list_variations(check_case(read_question([sweep])), read_values(()))
+    combined = list(combine(found, 3))
+    assert combined == list(combine(found, 3)) != list(combine(found, 4))
+    assert {len(one.labels) for one in combined} == {2, 3, 4}
+    counts = Counter(label for one in combined for label in one.labels)
+    allowed = {one.label for one in found if one.kind in ("equivalent", "conditions")}
+    assert set(counts) <= allowed
+    assert max(counts.values()) - min(counts[label] for label in allowed) <= 2
+    for one in combined:
+        keys = [split_override(text)[0] for text in one.a]
+        assert len(keys) == len(set(keys))
+    assert list(combine([one for one in found if one.kind == "numbers"], 3)) == []
+
+
 def test_a_reversal_turns_where_both_sides_have_one_gain(ended):
     turning = next(one for one in ended.turnings if "0.25" in ended.found[one.variation].variation.label)
     (turn,) = turning.turns
@@ -103,7 +137,7 @@ def test_page_with_the_specification_curve(ended, tmp_path):
     document, _ = compose_report([ended.folder], output=tmp_path)
     assert faulty(document) == []
     titles = [section.title for section in document.sections]
-    assert titles[:2] == ["Variations", "Where it turns"]
+    assert titles[:3] == ["Variations", "Where it turns", "Several changes at once"]
     curve, table = document.sections[0].blocks
     drawn = {hint for series in curve.panels[0].series for hint in series.hints}
     assert len(drawn) == len(ended.found) == len(table.rows) - len(ended.left_out)
@@ -125,8 +159,10 @@ def test_a_budget_cuts_and_the_sentence_says_so(cli, sweep):
     words = ("challenge", sweep, "--by", "controller.natural_frequency", *FEW, *LIST)
     ending = cli(*words, "--budget", 1, "-j", 1)
     assert ending.code == 0
-    assert "Not tried within the budget of 1 variations: 9 variations." in ending.out
     found = open_challenge(ending.folder)
+    cut = f"9 variations, {len(found.combined)} combinations."
+    assert f"Not tried within the budget of 1 variation: {cut}" in ending.out
+    assert f"not tried within the budget: {cut}" in cli("compare", sweep, "--by", GAIN).out
     assert len(found.cut) == len(found.found) - 1
     again = cli("check", ending.folder, "--require-scope", "conditions")
     assert (again.code, "not tried: budget" in again.out) == (1, True)
@@ -229,9 +265,6 @@ def test_conclusions_stand_beside_their_scope(cli, sweep, ended):
     assert re.search(said, runner.open_sweep(sweep).compare(by="controller.natural_frequency").summary)
     shutil.copytree(ended.folder, sweep.parent.parent / "challenges" / ended.folder.name)
     assert "Challenged: it holds for all tried numerical choices; it ends or turns with" in cli(*words).out
-
-
-GAIN = "controller.natural_frequency"
 
 
 @pytest.mark.costs(6)
