@@ -135,6 +135,12 @@ def _topics(_: Parser) -> Iterable[str]:
     return TOPICS
 
 
+def _families(_: Parser) -> Iterable[str]:
+    from runner.sweeps.challenge.families import FAMILIES
+
+    return FAMILIES
+
+
 def _studies(parser: Parser) -> Iterable[str]:
     from runner.study.names import study_names
 
@@ -147,6 +153,8 @@ _NAMED: Mapping[str, Callable[[Parser], Iterable[str]]] = {
     "metric": lambda _: metric_names(),
     "objectives": lambda _: metric_names(),
     "study": _studies,
+    "without": _families,
+    "vary": lambda parser: (f"{name}=" for name in _families(parser)),
 }
 
 

@@ -154,7 +154,7 @@ def _together(made: Challenge) -> Iterator[str]:
 
 
 def _cut(made: Challenge) -> str:
-    """Return how many variations and combinations the budget cut; empty for none."""
+    """Return the numbers of variations and combinations that the budget cut; empty for none."""
     together = sum(not one.pairs for one in made.combined) if made.ended else 0
     counts = ((len(made.cut), "variation"), (together, "combination"))
     return ", ".join(_count(count, noun) for count, noun in counts if count)

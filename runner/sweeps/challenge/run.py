@@ -2,6 +2,7 @@
 
 import contextlib
 import math
+import sys
 import time
 from collections.abc import Iterator, Sequence
 from dataclasses import replace
@@ -169,6 +170,7 @@ class _Runner:
         asked_case = Variation("numbers", "seeds", "fresh", "fresh seeds", (), (), exact=exact)
         back = False
         for pairs in pairs_of_looks(self._first):
+            _tell(f"the asked case on fresh seeds, {pairs} pairs")
             one = next(iter(self._compare([asked_case], pairs)), None)
             if one is None:
                 raise RunnerError(f"--budget: too small for the asked case ({self._budget.text}). Allowed: more time.")
@@ -195,6 +197,7 @@ class _Runner:
 
     def _ask(self, places: Sequence[int], pairs: int) -> list[Tried]:
         """Return some variations with a number of pairs; fewer if the time is over."""
+        _tell(f"{len(places)} variation{'s' if len(places) > 1 else ''}, {pairs} pairs each")
         chosen = [self._made.found[place].variation for place in places]
         at_once = len(chosen) if self._budget.seconds is None else _AT_ONCE
         tried: list[Tried] = []
@@ -220,6 +223,8 @@ class _Runner:
     def _turnings(self, made: Challenge, asked: Effect) -> list[Turning]:
         found = []
         ends = _ends(made)
+        if ends:
+            _tell(f"turning values towards {len(ends)} variation{'s' if len(ends) > 1 else ''}")
         self._draw_points(ends)
         for place in ends:
             turning = self._turning(made, place, asked)
@@ -279,6 +284,8 @@ class _Runner:
         most = self._budget.variations
         count = len(made.combined) if most is None else max(0, most - len(made.found))
         found = list(made.combined)
+        if count and not self._bench.is_over:
+            _tell(f"{min(count, len(found))} combinations")
         for start in range(0, min(count, len(found)), _AT_ONCE):
             some = found[start : min(start + _AT_ONCE, count)]
             draws = self._bench.draw(some, self._first, 1)
@@ -308,6 +315,10 @@ class _Runner:
         told = [one for one in made.found if one.judged and one.judged.effect is not None]
         if told and not self._bench.is_over:
             self._bench.keep_traces([find(told, key=_effect).variation for find in (min, max)])
+
+
+def _tell(text: str) -> None:
+    print(f"runner: {text}", file=sys.stderr)
 
 
 def _effect(one: Found) -> float:

@@ -184,9 +184,12 @@ def test_an_interrupted_challenge_is_continued_with_the_stored_runs(cli, sweep, 
         assert cli(*words).code == 130
     (folder,) = (sweep.parent.parent / "challenges").iterdir()
     assert "interrupted" in scope_sentences(open_challenge(folder))[0]
+    stored = {path: path.stat().st_mtime_ns for path in (folder.parent.parent / "shards").iterdir()}
     ending = cli(*words)
     assert (ending.code, ending.folder) == (0, folder)
-    assert "2 runs, 2 of them stored already" in ending.err
+    lines = [line for line in ending.err.splitlines() if "pairs" in line]
+    assert lines == ["runner: the asked case on fresh seeds, 12 pairs", "runner: 1 variation, 12 pairs each"]
+    assert {path: path.stat().st_mtime_ns for path in stored} == stored  # the asked case is not simulated again
 
 
 @pytest.mark.costs(2)
@@ -197,6 +200,10 @@ def test_an_interrupted_challenge_is_continued_with_the_stored_runs(cli, sweep, 
         (["--without", "noize"], "--without: unknown family 'noize'."),
         (["--without", "noize"], "Did you mean 'noise'?"),
         (["--vary", "noize=2"], "--vary: unknown family 'noize'."),
+        (["--vary", "gravty=2"], "Did you mean 'gravity'?"),
+        (["--vary", "controller.damping_ration=2"], "--vary: unknown key 'controller.damping_ration'. Allowed: "),
+        (["--vary", "controller.damping_ration=2"], "Did you mean 'controller.damping_ratio'?"),
+        (["--vary", "contoller.period=2"], "Did you mean 'controller.period'?"),
         (["--vary", "noise"], "--vary: no values ('noise'). Allowed: KEY=A,B"),
         (["--vary", "noise=much"], "challenge.noise: not a value of this family ('much')."),
         (["--budget", "0"], "--budget: not a budget ('0'). Allowed: a time such as 60s"),
