@@ -15,7 +15,7 @@ from runner.sweeps.challenge.stored import Challenge, open_challenge
 from runner.sweeps.challenge.table import read_values
 
 _DRAWS = 90  # of both sides for a variation: its looks, and its share of the turning values
-_FIXED = 0.3  # s for a variation: its config, check and compilation
+_FIXED = 0.4  # s for a variation: its config, check and compilation, and a share of the combinations
 _MOST_COMPARED = 2  # results that one challenge asks about
 
 
