@@ -126,7 +126,7 @@ def compare(
         raise RunnerError("; ".join(damage))
     names = [metrics] if isinstance(metrics, str) else metrics
     groups = [compare_sweeps(one, side, names).answers for side in rest]
-    return comparison([answer for group in groups for answer in group], groups)
+    return comparison([answer for group in groups for answer in group], [each.folder for each in things], groups)
 
 
 @dataclass(frozen=True, repr=False)

@@ -172,7 +172,35 @@ class Sweep(store.Sweep):
         asked = by or getattr(find_question(self._axes, self.question), "name", "")
         if not asked:
             raise RunnerError(f"by: all axes are conditions. Allowed: {', '.join(axis.name for axis in self._axes)}.")
-        return comparison(compare_levels(self._measurements, asked, inside, names if metrics else ()))
+        return comparison(compare_levels(self._measurements, asked, inside, names if metrics else ()), [self.folder])
+
+    @public
+    def repetitions_needed(self, share: float) -> "pd.DataFrame":
+        """Return the repetitions that show a difference with a probability of 80 %, as `--detect` counts them.
+
+        This sweep is the pilot. Each row is a metric, under the condition that needs most repetitions. The columns are
+        metric; at, that condition; repetitions; low and high, those of the 95 % interval of the scatter; and reason,
+        what the number follows from or why there is none.
+
+        Args:
+            share: The difference, as a share of the larger median, above 0.02.
+
+        Raises:
+            RunnerError: if the share is not above 0.02 and at most 1, or runs are missing.
+        """
+        import pandas as pd
+
+        from runner.reporting.sweep.detect import count_differences
+        from runner.reporting.sweep.subject import choose
+        from runner.statistics.conclusion import SHARE
+        from runner.sweeps.finer_step import work_out_sweep
+
+        if not SHARE < share <= 1.0:
+            raise RunnerError(f"share: cannot be shown ({share!r}). Allowed: above {SHARE:g}, up to 1.")
+        work_out_sweep(self)
+        found = count_differences(choose(measure_sweep(self)), share)
+        rows = [[one.metric, one.place, one.repetitions, *(one.ends or (None, None)), one.reason] for one in found]
+        return pd.DataFrame(rows, columns=["metric", "at", "repetitions", "low", "high", "reason"])
 
     def __repr__(self) -> str:
         told = _progress_text(find_status(self))

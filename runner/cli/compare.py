@@ -23,7 +23,6 @@ if TYPE_CHECKING:
     from runner.recordings.compare import RecordingComparison
     from runner.store import Run, Sweep
 
-_CHALLENGED = 2  # results that one challenge compares
 _LOGS = (".csv", ".tsv", ".txt", ".log", ".parquet", ".zip", ".bag", ".mcap", ".db3")  # a missing file is called a log
 
 
@@ -131,7 +130,7 @@ def _compare(options: Namespace) -> None:
         return
     print("\n\n".join(texts))
     words = [*map(str, options.folders), *(["--metrics", options.metrics[0]] if options.metrics else [])]
-    if len(things) <= _CHALLENGED and (line := scope_line(answers, [thing.folder for thing in things], words)):
+    if line := scope_line(answers, [thing.folder for thing in things], words):
         print(one_line(line))
 
 

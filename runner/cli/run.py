@@ -2,7 +2,7 @@
 
 An override sets a key or chooses from a group. `runner sweep` is the same as `runner -m`.
 
-Example: runner sweep robot=macro trajectory=quintic controller=computed_torque,joint_pd seed=0,1
+Example: runner sweep robot=macro controller=computed_torque,joint_pd seed=0,1
 """
 
 # Lines with flags of Hydra are read by Hydra's own command. It returns the overrides of a run or a sweep, which is then
@@ -19,6 +19,7 @@ from runner.base.errors import RunnerError, unknown
 from runner.base.paths import conf_dir
 from runner.base.sanitize import one_line
 from runner.cli.arguments import Parser, count
+from runner.cli.detect import difference_share, print_needed
 from runner.config.compose.files import outputs_dir, outputs_override, user_overrides
 from runner.reporting.table import Table, numbers, terminal
 from runner.store.kinds import WORD
@@ -53,7 +54,7 @@ def add_arguments(parser: Parser) -> None:
     parser.add_overrides("such as robot=macro, or seed=0,1 in a sweep")
     parser.add_argument(*_MANY, action="store_true", help="simulate a sweep over every combination")
     _add_own(parser)
-    parser.add_argument("-c", "--cfg", choices=_SHOWN, help="print the config, without a simulation")
+    parser.add_argument("-c", "--cfg", choices=_SHOWN, metavar="PART", help="print the config: job, hydra or all")
     parser.add_argument("--hydra-help", action="store_true", help="show all flags of Hydra")
     parser.add_argument("--version", action="store_true", help="show the version")
 
@@ -67,6 +68,9 @@ def _add_own(parser: Parser) -> None:
     )
     parser.add_argument("--dry-run", action="store_true", help="print cells and expected time; simulate nothing")
     parser.add_argument("--slurm", type=count, metavar="N", help="print the script of a job array of N tasks")
+    parser.add_argument(
+        "--detect", type=difference_share, metavar="SIZE", help="count the repetitions that show SIZE, such as 10%%"
+    )
 
 
 def run(arguments: Namespace) -> int:
@@ -95,6 +99,10 @@ def simulate(words: Sequence[str]) -> int:
         others.append(f"hydra.sweeper.workers={given.jobs}")
     if given.slurm and not any(word in _MANY for word in others):
         raise RunnerError("--slurm: one run needs no job array. Add -m for a sweep.")
+    if given.detect and not any(word in _MANY for word in others):
+        raise RunnerError("--detect: one run compares nothing. Add -m for a sweep.")
+    if given.detect and (given.slurm or given.dry_run):
+        raise RunnerError("--detect: simulates a pilot, the other option nothing. Leave out one of them.")
     if given.slurm and given.dry_run:
         raise RunnerError("--slurm: simulates nothing, as --dry-run. Leave out one of them.")
     if given.json and not given.dry_run:
@@ -104,6 +112,8 @@ def simulate(words: Sequence[str]) -> int:
         return 0  # --cfg, --hydra-help and the like
     if given.dry_run:
         return _preview(line, overrides, given.config_dir, given.json)
+    if given.detect:
+        return _count_repetitions(line, overrides, given.config_dir, given.detect)
     if given.slurm:
         return _print_job_array(line, overrides, given.config_dir, words_of_task, given.slurm)
     return _simulate(line, overrides, given.config_dir, typed)
@@ -208,6 +218,13 @@ def _preview(line: _Line, overrides: Sequence[str], config_dirs: Sequence[Path],
     plan = own_part(grid)
     print_preview(plan, preview(plan, engine), as_json)
     return 0
+
+
+def _count_repetitions(line: _Line, overrides: Sequence[str], config_dirs: Sequence[Path], share: float) -> int:
+    """Print the repetitions of the line's sweep that show a difference."""
+    from runner.config.compose.composer import Composer
+
+    return print_needed(*_split(overrides), Composer(config_dirs, line.root), share)
 
 
 def _plan(line: _Line, overrides: Sequence[str], config_dirs: Sequence[Path]) -> "tuple[Grid, Engine]":

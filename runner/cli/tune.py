@@ -72,6 +72,7 @@ def run(options: argparse.Namespace) -> int:
 
 
 def _tell(tuning: "Tuning") -> int:
+    from runner.reporting.challenge.beside import scope_line
     from runner.reporting.stored import write
     from runner.reporting.sweep.tuning import compare_on_fresh_seed
     from runner.sweeps.tuning.objective import best
@@ -86,8 +87,9 @@ def _tell(tuning: "Tuning") -> int:
             for objective, value in zip(objectives, trials[number].values, strict=True)
         )
         print(f"chosen: {values} with {shlex.join(tuning.study.trial_overrides(trials[number]))}")
-    _, compared = compare_on_fresh_seed(tuning)
-    for sentence in (*at_ends(tuning), *compared):
+    answers, compared = compare_on_fresh_seed(tuning)
+    scope = scope_line(answers, [tuning.folder], [str(tuning.folder)])
+    for sentence in filter(None, (*at_ends(tuning), *compared, scope)):
         print(f"runner: {sentence}", file=sys.stderr)
     progress.begin("preparing the report")
     print(write([tuning.folder], (), report.FORMATS))

@@ -4,20 +4,17 @@ import math
 from collections.abc import Sequence
 from dataclasses import dataclass, field
 from functools import cached_property, lru_cache
-from statistics import NormalDist
 from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
 from runner.base.arrays import FloatArray
-from runner.statistics.interval import SMALLEST_SAMPLE
+from runner.statistics.interval import CONFIDENCE, SMALLEST_SAMPLE
+from runner.statistics.sample_size import count_pairs, few_pairs, pairs_range, scale
 
 EXACT_UP_TO = 200
 """Differences up to which the distribution is summed up; beyond, the normal law stands in for it."""
-
-_POWER = 0.8  # probability of showing a difference, for which pairs are counted
-_EFFICIENCY = 3.0 / math.pi  # of signed ranks, for normal differences, relative to the mean
 
 
 class SignedRanks:
@@ -184,36 +181,37 @@ class Comparison:
         """
         return self._ranks.interval(level) if self.n >= SMALLEST_SAMPLE else None
 
-    def pairs_needed(self, difference: float, level: float) -> int | None:
+    def pairs_needed(self, difference: float, level: float, least: float = 0.0) -> int | None:
         """Return the number of pairs that show a difference with probability 80 %; None if it cannot be estimated.
 
         Args:
             difference: The difference.
             level: Level of the test.
+            least: Size that the estimate must also exceed.
         """
-        scale = self._scale(level)
-        if scale is None or not difference > 0.0:
+        if self._deviation is None or not difference > 0.0:
             return None
-        count = (scale / difference) ** 2
+        count = count_pairs(*self._deviation, difference, level, least)
         return max(fewest_pairs(level), math.ceil(count)) if math.isfinite(count) else None
+
+    def range_needed(self, difference: float, level: float, least: float = 0.0) -> tuple[int, int] | None:
+        """Return the numbers of pairs that both ends of the 95 % interval of the scatter need; see `pairs_needed`."""
+        if self._deviation is None or not difference > least:
+            return None
+        low, high = pairs_range(*self._deviation, difference, level, least, CONFIDENCE)
+        return max(fewest_pairs(level), math.ceil(low)), max(fewest_pairs(level), math.ceil(high))
 
     def smallest_shown(self, level: float) -> float | None:
         """Return the difference that as many pairs as these show with a probability of 80 %, see `pairs_needed`."""
-        scale = self._scale(level)
-        return None if scale is None or self.n < fewest_pairs(level) else scale / math.sqrt(self.n)
-
-    def _scale(self, level: float) -> float | None:
-        """Return the difference that one pair would show, if the differences are normal; None with too few pairs.
-
-        With s_a and s_b the standard deviations of both and r their correlation, the variance of a difference is
-        s_a^2 + s_b^2 - 2 r s_a s_b.
-        """
-        one, other = self._numbers
-        if len(one) < 3:
+        if self._deviation is None or self.n < fewest_pairs(level):
             return None
-        variance = float(np.var(other - one, ddof=1))
-        normal = NormalDist()
-        return (normal.inv_cdf(1.0 - level / 2.0) + normal.inv_cdf(_POWER)) * math.sqrt(variance / _EFFICIENCY)
+        return scale(*self._deviation, level) / math.sqrt(self.n - few_pairs(level))
+
+    @property
+    def _deviation(self) -> tuple[float, int] | None:
+        """Standard deviation of the differences and its degrees of freedom; None with fewer than three of them."""
+        one, other = self._numbers
+        return (float(np.std(other - one, ddof=1)), len(one) - 1) if len(one) >= 3 else None
 
     @property
     def _numbers(self) -> tuple[FloatArray, FloatArray]:

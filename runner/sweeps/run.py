@@ -7,7 +7,7 @@ import shutil
 import sys
 import time
 from collections import Counter
-from collections.abc import Generator, Iterator, Sequence
+from collections.abc import Callable, Generator, Iterator, Sequence
 from dataclasses import dataclass, field, replace
 from pathlib import Path
 
@@ -47,6 +47,10 @@ _DAMAGE_SHOWN = 10
 _LOOKED_AT = 100  # cells
 _SCRATCH = "scratch-"  # start of the names of folders for temporary files of a command
 _ALL_TRACES_UP_TO = 3000  # runs; with more, sweep.trace=auto is sample
+
+
+def _tell(text: str) -> None:
+    print(f"runner: {text}", file=sys.stderr)
 
 
 @dataclass(frozen=True)
@@ -158,8 +162,17 @@ def run_sweep(plan: Plan, engine: Engine, command: str, accept_cut_short: bool =
     return Ended(folder, outputs, names, ends, failures, len(ends.left), stored, checked.resolved, part)
 
 
-def make_missing(plan: Plan, checked: Checked, rules: Rules, engine: Engine) -> tuple[Ends, int]:
+def make_missing(
+    plan: Plan, checked: Checked, rules: Rules, engine: Engine, tell: Callable[[str], None] = _tell
+) -> tuple[Ends, int]:
     """Execute the missing runs and calibrations of a checked plan; return the outcomes and the number of cached ones.
+
+    Args:
+        plan: The plan.
+        checked: Result of its check.
+        rules: The rules.
+        engine: Location of the execution.
+        tell: Function that prints the number of runs and the expected duration.
 
     Raises:
         ConfigError: if the jobs exceed a limit of CPU time or memory.
@@ -171,7 +184,7 @@ def make_missing(plan: Plan, checked: Checked, rules: Rules, engine: Engine) -> 
     left = ends.left[np.argsort(-checked.costs[ends.left], kind="stable")]
     queue = Queue(plan.alike, names, checked.costs, left, rules)
     try:
-        for report in make_jobs(plan, checked, queue, left, engine, stored):
+        for report in make_jobs(plan, checked, queue, left, engine, stored, tell):
             ends.add(report.outcomes)
             if report.trouble:
                 raise TemporaryError(f"{report.trouble}; {GO_ON}")
@@ -249,7 +262,13 @@ def _find_calibrated(rules: Rules, name: str, damage: list[str]) -> store.Outcom
 
 
 def make_jobs(
-    plan: Plan, checked: Checked, queue: Queue, cells: NDArray[np.intp], engine: Engine, stored: int
+    plan: Plan,
+    checked: Checked,
+    queue: Queue,
+    cells: NDArray[np.intp],
+    engine: Engine,
+    stored: int,
+    tell: Callable[[str], None] = _tell,
 ) -> Iterator[Report]:
     """Execute the jobs of a queue and show the progress; yield the report of each chunk.
 
@@ -260,12 +279,13 @@ def make_jobs(
         cells: Cells of the queue, shape (n,). A tuning, whose trials are chosen later, gives a similar cell for each.
         engine: Location of the execution.
         stored: Number of cached jobs.
+        tell: Function that prints the number of jobs and the expected duration.
 
     Raises:
         ConfigError: if the jobs exceed a limit of CPU time or memory.
         TemporaryError: if the time for a job cannot be written.
     """
-    _tell(_count(checked, len(cells), stored))
+    tell(_count(checked, len(cells), stored))
     if not len(cells):
         return
     check_memory_together(checked.memory, 1 if engine.address else min(max(engine.workers, 1), len(cells)))
@@ -274,7 +294,7 @@ def make_jobs(
     expected = estimate(plan, checked, cells, queue.rules.kept)
     check_cpu_time(checked.first.limits, expected.seconds, len(cells), expected.known)
     pace = Pace(queue.rules.sweep)
-    with _workers(queue, len(cells), engine, expected) as reports:
+    with _workers(queue, len(cells), engine, expected, tell) as reports:
         progress.begin("simulating", ticks, "ticks", lambda: queue.ticks_made)
         for report in reports:
             try:
@@ -292,7 +312,9 @@ def _count(checked: Checked, left: int, stored: int) -> str:
 
 
 @contextlib.contextmanager
-def _workers(queue: Queue, jobs: int, engine: Engine, expected: Estimate) -> Iterator[Iterator[Report]]:
+def _workers(
+    queue: Queue, jobs: int, engine: Engine, expected: Estimate, tell: Callable[[str], None]
+) -> Iterator[Iterator[Report]]:
     """Start the workers of a queue, given its expected CPU time; yield an iterator over the reports of its chunks."""
     if engine.address is not None:
         with (
@@ -300,14 +322,14 @@ def _workers(queue: Queue, jobs: int, engine: Engine, expected: Estimate) -> Ite
             contextlib.closing(on_cluster(queue, remote.client, remote)) as reports,
         ):
             processes = max(1, len(remote.usable()))
-            _tell(expected.in_words(processes, processes))
+            tell(expected.in_words(processes, processes))
             yield reports
     elif seconds := _seconds_in_process(queue.rules, min(engine.workers, jobs), expected):
-        _tell(duration_text(queue.rules, jobs, engine, expected))
+        tell(duration_text(queue.rules, jobs, engine, expected))
         with contextlib.closing(_begun_in_process(queue, engine.workers, seconds)) as reports:
             yield reports
     else:
-        _tell(duration_text(queue.rules, jobs, engine, expected))
+        tell(duration_text(queue.rules, jobs, engine, expected))
         workers = min(engine.workers, jobs)
         progress.begin("starting processes")
         with (
@@ -346,10 +368,6 @@ def _begun_in_process(queue: Queue, workers: int, seconds: float) -> Generator[R
     if queue.left:
         with local_client(min(workers, queue.left), _scratch(queue.rules)) as client:
             yield from on_cluster(queue, client)
-
-
-def _tell(text: str) -> None:
-    print(f"runner: {text}", file=sys.stderr)
 
 
 def _scratch(rules: Rules) -> Path:

@@ -138,11 +138,19 @@ def _topics(_: Parser) -> Iterable[str]:
     return TOPICS
 
 
+def _families(_: Parser) -> Iterable[str]:
+    from runner.sweeps.challenge.families import FAMILIES
+
+    return FAMILIES
+
+
 # By the prefix of the attribute that stores an argument.
 _NAMED: Mapping[str, Callable[[Parser], Iterable[str]]] = {
     "topic": _topics,
     "metric": lambda _: metric_names(),
     "objectives": lambda _: metric_names(),
+    "without": _families,
+    "vary": lambda parser: (f"{name}=" for name in _families(parser)),
 }
 
 

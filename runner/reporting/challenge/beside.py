@@ -1,14 +1,22 @@
-"""Scope of a conclusion: the sentence of its challenge, or the command that makes one."""
+"""Scope of a conclusion: the sentence of its challenge, or the command that makes one with its expected time."""
 
 import shlex
 from collections.abc import Sequence
 from pathlib import Path
 
 from runner.base.errors import RunnerError
+from runner.base.quantities import format_duration
 from runner.reporting.answers import Answer
 from runner.reporting.challenge.words import short_scope
+from runner.store.finished import Finished
 from runner.store.kinds import KINDS, outputs_of
+from runner.store.run import Run
 from runner.sweeps.challenge.stored import Challenge, open_challenge
+from runner.sweeps.challenge.table import read_values
+
+_DRAWS = 90  # of both sides for a variation: its looks, and its share of the turning values
+_FIXED = 0.4  # s for a variation: its config, check and compilation, and a share of the combinations
+_MOST_COMPARED = 2  # results that one challenge asks about
 
 
 def scope_line(answers: Sequence[Answer], folders: Sequence[Path], words: Sequence[str] = ()) -> str:
@@ -16,18 +24,39 @@ def scope_line(answers: Sequence[Answer], folders: Sequence[Path], words: Sequen
 
     Args:
         answers: The answers.
-        folders: Folders of the results that they describe.
-        words: Arguments of `runner challenge` for these results; empty to name no command line.
+        folders: Folders of the results that they describe; of more than two there is no challenge.
+        words: Arguments of `runner challenge` for these results; empty for a page, which is read on any machine.
     """
-    metric = next((one.metric for one in answers if one.rank == 0 and one.sign), "")
-    if not metric:
+    first = next((one for one in answers if one.rank == 0 and one.sign), None)
+    if first is None or len(folders) > _MOST_COMPARED:
         return ""
-    found = [made for made in _challenges(folders) if made.question.metric == metric]
+    found = [made for made in _challenges(folders) if made.question.metric == first.metric]
     if found:
         return short_scope(found[0])
     if not words:
         return "Not challenged: the command runner challenge tries other choices."  # a page marks no code
-    return f"Not challenged: `{shlex.join(['runner', 'challenge', *words])}` tries other choices."
+    command = shlex.join(["runner", "challenge", *words])
+    return f"Not challenged: `{command}`{_time_text(first, outputs_of(folders[0]))} tries other choices."
+
+
+def _time_text(answer: Answer, outputs: Path) -> str:
+    """Return the expected time of a challenge in brackets, from the times of two stored runs; empty if unknown."""
+    pairs = answer.pairs
+    if pairs is None:
+        return ""
+    names = pairs.a.hashes[int(pairs.of_a[0])], pairs.b.hashes[int(pairs.of_b[0])]
+    try:
+        draws = sum(_seconds_of_draw(Finished(outputs).open(name)) for name in names)
+    except (RunnerError, KeyError):  # a run is in another outputs folder or keeps no trace; its times are not known
+        return ""
+    variations = sum(map(len, read_values(()).values()))
+    seconds = variations * (_FIXED + _DRAWS * draws / len(names))
+    return f" (about {format_duration(5.0 * max(1, round(seconds / 5.0)))})"
+
+
+def _seconds_of_draw(run: Run) -> float:
+    """Return the time of one repetition of a run with a trace, without its assembly, in s."""
+    return float(run.record["timing"]["tick_time_median"]) * (len(run.t) - 1)
 
 
 def _challenges(folders: Sequence[Path]) -> list[Challenge]:

@@ -11,6 +11,7 @@ from runner.reporting.challenge.words import (
     NOT_DONE,
     TITLES,
     class_of,
+    combinations_table,
     scope_sentences,
     turning_rows,
     variations_table,
@@ -50,6 +51,9 @@ def challenge_document(made: Challenge, sweep: Sweep) -> Document:
             "of the difference and of both ends of its 95 % interval."
         )
         sections.append(Section("Where it turns", [Text(text), Table("", ["towards", "found"], turned)]))
+    if any(one.pairs for one in made.combined):
+        text = f"Changes are drawn from seed {made.question.seed}, each nearly equally often. Nothing is tested."
+        sections.append(Section("Several changes at once", [Text(text), combinations_table(made)]))
     sections.append(Section("Not covered", [Text(NOT_DONE)]))
     sections.append(Section("Provenance", [Code(made.command), Provenance([("challenge", made.folder.name)])]))
     return Document(

@@ -6,6 +6,7 @@ from runner.base.quantities import number
 from runner.base.sanitize import few
 from runner.reporting.metric_titles import capital, title
 from runner.reporting.table import Table, numbers
+from runner.statistics.conclusion import SHARE
 from runner.statistics.scope import TOLD, Word
 from runner.statistics.turning import Turn
 from runner.sweeps.challenge.question import CLASSES, Class
@@ -69,13 +70,14 @@ def scope_sentences(made: Challenge) -> list[str]:
     texts = [f"{head}{at}, on fresh seeds too ({made.fresh.pairs} pairs)."]
     for kind in CLASSES:
         texts += _of_class(made, kind)
+    texts += _together(made)
     if question.left:
         texts.append(f"{_count(question.left, 'other condition')} of the result not asked; --where chooses one.")
     if made.left_out:
         names = dict.fromkeys(TITLES.get(one.family, one.family) for one in made.left_out)
         texts.append(f"Left out: {', '.join(names)}.")
-    if made.cut:
-        texts.append(f"Not tried within the budget of {made.budget}: {_count(len(made.cut), 'variation')}.")
+    if cut := _cut(made):
+        texts.append(f"Not tried within the budget of {made.budget}: {cut}.")
     return texts
 
 
@@ -94,7 +96,8 @@ def short_scope(made: Challenge) -> str:
     names = list(dict.fromkeys(TITLES.get(one.variation.family, one.variation.family) for one in turned))
     ends = f"it ends or turns with {few(names, _NAMED)}" if turned else ""
     at = f" at {made.question.at}" if made.question.left else ""
-    return f"Challenged{at}: {'; '.join(filter(None, (held, ends))) or 'no variation is decided'}."
+    cut = f"not tried within the budget: {_cut(made)}" if made.cut else ""
+    return f"Challenged{at}: {'; '.join(filter(None, (held, ends, cut))) or 'no variation is decided'}."
 
 
 def variations_table(made: Challenge) -> Table:
@@ -119,6 +122,49 @@ def word_text(made: Challenge, one: Found) -> str:
     if one.judged.needed:
         return f"{one.judged.word} ({number(float(one.judged.needed), 2)} pairs would)"
     return one.judged.word
+
+
+def combinations_table(made: Challenge) -> Table:
+    """Return a row for each combination that was tried: its changes, effect and pairs."""
+    rows = [
+        ["; ".join(one.labels), _effect_text(made, one.effect) or "a side does not work", str(one.pairs)]
+        for one in made.combined
+        if one.pairs
+    ]
+    return Table("", ["changed together", *numbers("effect", "pairs")], rows)
+
+
+def _together(made: Challenge) -> Iterator[str]:
+    """Yield the description of the combinations that were tried."""
+    tried = [one for one in made.combined if one.pairs]
+    effects = sorted(one.effect for one in tried if one.effect is not None)
+    if not tried:
+        return
+    texts = []
+    if effects:
+        sign = made.question.sign or 1
+        same, other = (sum(each * sign * way > SHARE for each in effects) for way in (1, -1))
+        words = ("the same sign", "the other sign") if made.question.sign else ("larger", "smaller")
+        near = len(effects) - same - other
+        texts = [f"{text} in {count}" for text, count in ((words[0], same), ("within 2 %", near), (words[1], other))]
+        texts[-1] += f" ({_effect_text(made, effects[0])} to {_effect_text(made, effects[-1])})"
+    texts += [f"a side does not work in {len(tried) - len(effects)}"] if len(tried) > len(effects) else []
+    seed = made.question.seed
+    yield f"{_count(len(tried), 'combination')} of two to four changes (seed {seed}), not tested: {', '.join(texts)}."
+
+
+def _cut(made: Challenge) -> str:
+    """Return the numbers of variations and combinations that the budget cut; empty for none."""
+    together = sum(not one.pairs for one in made.combined) if made.ended else 0
+    counts = ((len(made.cut), "variation"), (together, "combination"))
+    return ", ".join(_count(count, noun) for count, noun in counts if count)
+
+
+def _effect_text(made: Challenge, effect: float | None) -> str:
+    """Return a relative effect in per cent, or that of a fraction; empty without one."""
+    if effect is None:
+        return ""
+    return number(effect, 2) if made.question.is_fraction else f"{number(100.0 * effect, 2)} %"
 
 
 def class_of(made: Challenge, kind: Class) -> list[Found]:

@@ -9,6 +9,7 @@ from runner.base.quantities import label_with_unit, quantity
 from runner.base.sanitize import few, one_line
 from runner.reporting.answer_map import make_map
 from runner.reporting.answers import EXPLAINED, HEADER, PAIRS, Answer, Asked
+from runner.reporting.challenge.beside import scope_line
 from runner.reporting.comparison.difference_figure import difference_panel
 from runner.reporting.comparison.pairs import Label, Pairs, label_text
 from runner.reporting.comparison.sweeps import (
@@ -69,6 +70,7 @@ def comparison_document(sides: Sequence[Measurements], wanted: Sequence[str] = (
     lines = [text for one in found for text in sentences(one.answers)[:1]]
     lines += [one.differences.in_words(one.pairs.first, one.pairs.second) for one in found]
     shared = [text for text in sides[0].fixed if all(text in side.fixed for side in sides)]
+    lines += filter(None, [scope_line(found[0].answers, [side.folder for side in sides])])
     lines += [NOISE_ALONE] if any(noise_alone([one.pairs.a, one.pairs.b]) for one in found) else []
     return Document(
         title=(len(found) == 1 and found[0].differences.question("A", "B")) or f"{len(sides)} sweeps compared",

@@ -5,6 +5,7 @@ from collections.abc import Sequence
 from runner.base.quantities import above_rounding, with_powers
 from runner.base.sanitize import one_line
 from runner.reporting.answers import PAIRS, Answer
+from runner.reporting.challenge.beside import scope_line
 from runner.reporting.comparison.differences import ConfigDifferences, find_differences
 from runner.reporting.comparison.pairs import match
 from runner.reporting.comparison.sweeps import compare_runs, letter
@@ -32,6 +33,7 @@ def runs_document(runs: Sequence[Run]) -> Document:
         answers, why = compare_runs(sides[0], side)
         lines += sentences(answers) or [f"{sides[0].name} and {side.name}: {why}."]
         compared.append(answers)
+    lines += filter(None, [scope_line(compared[0], [run.folder for run in runs])])
     lines += [one.in_words(names[0], name) for one, name in zip(differences, names[1:], strict=True)]
     failed = [
         with_powers(f"{name} {run.failure}.") for name, run in zip(names, runs, strict=True) if run.status == "failed"

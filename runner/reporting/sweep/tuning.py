@@ -14,6 +14,7 @@ from runner.base.quantities import number, quantity
 from runner.config.compose.units import key_unit
 from runner.plugins.metric_units import units
 from runner.reporting.answers import CHOSEN, Answer
+from runner.reporting.challenge.beside import scope_line
 from runner.reporting.charts.figure import spaced_indices
 from runner.reporting.comparison.sweeps import compare_runs
 from runner.reporting.document import Block, Curves, Document, Notice, Origin, Panel, Section, Series, Table, Text
@@ -120,6 +121,7 @@ def tuning_document(tuning: Tuning, folder: Path) -> Document:
     sweep = Sweep(tuning.folder, overrides, [tuning.trials[place].run for place in made], tuning.study.command)
     measurements = measure_sweep(sweep)
     answers, texts = compare_on_fresh_seed(tuning)
+    texts = [*texts[:1], *filter(None, [scope_line(answers, [tuning.folder])]), *texts[1:]]
     compared = [Section("Default and tuned on a fresh seed", answer_blocks(answers))] if answers else []
     sections, shown = [*compared, _what(trials)], None
     if trials.good:

@@ -114,7 +114,7 @@ class Bench:
         plan = Changed(self._case, cells, self._keys, shared, self._composer)
         checked = check(plan)
         rules = replace(make_rules(checked.first.sweep, self._folder, len(plan), self._command), trace=trace)
-        make_missing(plan, checked, rules, self._engine)
+        make_missing(plan, checked, rules, self._engine, lambda _: None)
         finished = Finished(self._outputs)
         for number, (cell, name) in enumerate(zip(cells, checked.names, strict=True)):
             if cell not in self._names:

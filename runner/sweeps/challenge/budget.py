@@ -34,5 +34,5 @@ def read_budget(text: str) -> Budget:
         if found[2]:
             return Budget(seconds=float(found[1]) * (_MINUTE if found[2] == "min" else 1.0), text=text)
         if found[1].isdecimal():
-            return Budget(variations=int(found[1]), text=f"{text} variations")
+            return Budget(variations=int(found[1]), text=f"{text} variation{'s' if int(text) > 1 else ''}")
     raise RunnerError(f"--budget: not a budget ('{text}'). Allowed: a time such as 60s, or a number of variations.")

@@ -2,10 +2,12 @@
 
 import contextlib
 import math
+import sys
 import time
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import replace
 from pathlib import Path
+from typing import TypeVar
 
 import numpy as np
 
@@ -35,6 +37,7 @@ from runner.sweeps.challenge.bench import Bench
 from runner.sweeps.challenge.budget import Budget
 from runner.sweeps.challenge.case import Case, check_case
 from runner.sweeps.challenge.changed import Changed, changed_keys
+from runner.sweeps.challenge.combinations import Combined, combine
 from runner.sweeps.challenge.drawn import Drawn, compare_drawn
 from runner.sweeps.challenge.families import Change, Family, LeftOutError, family_of
 from runner.sweeps.challenge.question import LeftOut, Question, Value, Variation
@@ -44,6 +47,7 @@ from runner.sweeps.drawn import draws_nothing
 from runner.sweeps.job import check_job
 from runner.sweeps.run import Engine
 
+_Checked = TypeVar("_Checked", Variation, Combined)
 _ENDS = ("reversed", "vanishes")
 _AT_ONCE = 4  # variations between two looks at the clock
 
@@ -80,11 +84,12 @@ def challenge(
             kept.append(Found(_checked(plan, place, one)))
         except ConfigError as error:
             left.append(LeftOut(one.family, one.value, error.problems[0], one.kind, True))
+    combined = list(_combine([one.variation for one in kept], question.seed, case, composer))
     if not kept:
         raise RunnerError("challenge: no variation applies. Allowed: --vary KEY=A,B.")
     store.prepare(outputs)
     folder = place_of(outputs, question, kept, left)
-    made = Challenge(folder, question, kept, left, command, budget=budget.text)
+    made = Challenge(folder, question, kept, left, command, combined=combined, budget=budget.text)
     with at_work(folder, exclusive=True) as name:
         keys = changed_keys([*keys, "seed=", "repetitions="])
         bench = Bench(case, keys, folder, outputs, engine, name)
@@ -109,8 +114,8 @@ def _has_ended(made: Challenge) -> bool:
         return False
 
 
-def _checked(plan: Changed, place: int, variation: Variation) -> Variation:
-    """Return a variation that can be simulated, with the knowledge if anything is drawn.
+def _checked(plan: Changed, place: int, changed: _Checked) -> _Checked:
+    """Return a variation or combination that can be simulated, with the knowledge if anything is drawn.
 
     Raises:
         ConfigError: if it cannot be simulated.
@@ -118,7 +123,18 @@ def _checked(plan: Changed, place: int, variation: Variation) -> Variation:
     composed = [plan.composed(cell) for cell in (2 * place, 2 * place + 1)]
     for one in composed:
         check_job(one)
-    return replace(variation, exact=all(draws_nothing(one.resolved) for one in composed))
+    return replace(changed, exact=all(draws_nothing(one.resolved) for one in composed))
+
+
+def _combine(variations: Sequence[Variation], seed: int, case: Case, composer: Composer) -> Iterator[Combined]:
+    """Yield the combinations that can be simulated, with the knowledge if anything is drawn."""
+    combined = list(combine(variations, seed))
+    keys = changed_keys([text for one in variations for text in (*one.a, *one.b)])
+    cells = [(side, tuple(more)) for one in combined for side, more in enumerate((one.a, one.b))]
+    plan = Changed(case, cells, keys, (), composer)
+    for place, one in enumerate(combined):
+        with contextlib.suppress(ConfigError):
+            yield _checked(plan, place, one)
 
 
 class _Runner:
@@ -143,6 +159,7 @@ class _Runner:
         found = [self._described(place, judged) for place in range(len(made.found))]
         made = replace(made, found=found)
         made = replace(made, turnings=self._turnings(made, asked))
+        made = replace(made, combined=self._described_together(made, asked))
         self._keep_traces(made)
         return made
 
@@ -153,6 +170,7 @@ class _Runner:
         asked_case = Variation("numbers", "seeds", "fresh", "fresh seeds", (), (), exact=exact)
         back = False
         for pairs in pairs_of_looks(self._first):
+            _tell(f"the asked case on fresh seeds, {pairs} pairs")
             one = next(iter(self._compare([asked_case], pairs)), None)
             if one is None:
                 raise RunnerError(f"--budget: too small for the asked case ({self._budget.text}). Allowed: more time.")
@@ -179,6 +197,7 @@ class _Runner:
 
     def _ask(self, places: Sequence[int], pairs: int) -> list[Tried]:
         """Return some variations with a number of pairs; fewer if the time is over."""
+        _tell(f"{len(places)} variation{'s' if len(places) > 1 else ''}, {pairs} pairs each")
         chosen = [self._made.found[place].variation for place in places]
         at_once = len(chosen) if self._budget.seconds is None else _AT_ONCE
         tried: list[Tried] = []
@@ -204,6 +223,8 @@ class _Runner:
     def _turnings(self, made: Challenge, asked: Effect) -> list[Turning]:
         found = []
         ends = _ends(made)
+        if ends:
+            _tell(f"turning values towards {len(ends)} variation{'s' if len(ends) > 1 else ''}")
         self._draw_points(ends)
         for place in ends:
             turning = self._turning(made, place, asked)
@@ -258,6 +279,23 @@ class _Runner:
             allowed = np.linspace(points[0], points[-1], count + 1).tolist()
         return points, allowed
 
+    def _described_together(self, made: Challenge, asked: Effect) -> list[Combined]:
+        """Return the combinations with their effects; the budget may cut them."""
+        most = self._budget.variations
+        count = len(made.combined) if most is None else max(0, most - len(made.found))
+        found = list(made.combined)
+        if count and not self._bench.is_over:
+            _tell(f"{min(count, len(found))} combinations")
+        for start in range(0, min(count, len(found)), _AT_ONCE):
+            some = found[start : min(start + _AT_ONCE, count)]
+            draws = self._bench.draw(some, self._first, 1)
+            for place, (a, b) in enumerate(draws, start):
+                tried = compare_drawn(a, b, self._question.error)
+                (judged,) = judge([tried], asked, ALPHA)
+                works = judged.word not in ("neither works", "only one works", "cannot be asked")
+                found[place] = replace(found[place], pairs=len(a.values), effect=judged.effect if works else None)
+        return found
+
     def _draw_points(self, places: Sequence[int]) -> None:
         """Simulate the first points of all continuous choices together."""
         changes: list[Change] = []
@@ -277,6 +315,10 @@ class _Runner:
         told = [one for one in made.found if one.judged and one.judged.effect is not None]
         if told and not self._bench.is_over:
             self._bench.keep_traces([find(told, key=_effect).variation for find in (min, max)])
+
+
+def _tell(text: str) -> None:
+    print(f"runner: {text}", file=sys.stderr)
 
 
 def _effect(one: Found) -> float:

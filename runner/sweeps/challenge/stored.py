@@ -14,6 +14,7 @@ from runner.statistics.turning import Turn
 from runner.store.kinds import KINDS
 from runner.store.seal import DamagedError, read_json, sealed_json
 from runner.store.sweep import write_jobs
+from runner.sweeps.challenge.combinations import Combined
 from runner.sweeps.challenge.question import LeftOut, Question, Side, Variation
 
 _FILE = KINDS["challenge"].files[0]
@@ -71,6 +72,7 @@ class Challenge:
         fresh: The asked case on fresh seeds; None before it is simulated.
         came_back: True if the stored answer came back on fresh seeds.
         turnings: Searches for turning values.
+        combined: Combinations of several changes.
         ended: True if nothing is left to do within the budget.
         budget: The budget as given; empty for none.
         seconds: Wall-clock time of the last command, in s.
@@ -84,6 +86,7 @@ class Challenge:
     fresh: Judged | None = None
     came_back: bool = False
     turnings: Sequence[Turning] = ()
+    combined: Sequence[Combined] = ()
     ended: bool = False
     budget: str = ""
     seconds: float = 0.0
@@ -155,6 +158,7 @@ def _read(folder: Path, content: dict[str, Any]) -> Challenge:
         [_found(one) for one in content["found"]],
         [LeftOut(**one) for one in content["left_out"]],
         fresh=_judged(content["fresh"]),
+        combined=[Combined(**one) for one in content["combined"]],
         turnings=[Turning(**{**one, "turns": [_turn(turn) for turn in one["turns"]]}) for one in content["turnings"]],
         **known,
     )

@@ -7,6 +7,7 @@ from pathlib import Path
 from pydantic import ValidationError
 
 from runner.base.bounded_yaml import CONFIG, read_yaml
+from runner.base.dotted_keys import dotted, get, leaves
 from runner.base.errors import ConfigError, RunnerError, unknown
 from runner.base.paths import conf_dir
 from runner.schema.model import StrictModel
@@ -16,6 +17,7 @@ from runner.sweeps.challenge.question import CLASSES, LeftOut, Value, Variation
 
 GROUP = "challenge"
 _STANDARD = "standard"
+_TOP_LEVEL = "gravity"  # key without a dot that is a choice
 _MOST = 200  # variations
 _COMMA = re.compile(r",(?![^\[]*\])")  # outside of a list such as [1,2,3]
 
@@ -79,8 +81,8 @@ def change_values(values: Values, vary: Sequence[str], without: Sequence[str]) -
         given = [_value(part.strip()) for part in _COMMA.split(listed) if part.strip()]
         if not name or not given:
             raise RunnerError(f"--vary: no values ({text!r}). Allowed: KEY=A,B, such as duration=0.7,3.")
-        if "." not in name and name not in FAMILIES and name != "gravity":
-            raise RunnerError(unknown("family", name, FAMILIES, "--vary"))
+        if "." not in name and name not in (*FAMILIES, _TOP_LEVEL):
+            raise RunnerError(unknown("family", name, [*FAMILIES, _TOP_LEVEL], "--vary"))
         found[name] = given
     return found
 
@@ -89,11 +91,13 @@ def list_variations(case: Case, values: Values) -> tuple[list[Variation], list[L
     """Return the variations of a case in the order of the budget, and those that do not apply.
 
     Raises:
-        RunnerError: if there are too many.
+        RunnerError: if there are too many, or a key does not exist.
     """
     found: list[Variation] = []
     left: list[LeftOut] = []
     for name, some in values.items():
+        if name not in FAMILIES:
+            _check_key(case, name)
         for value in some:
             for place, family in enumerate(FAMILIES.get(name, [Family("conditions", _setting(name), name)])):
                 try:
@@ -109,6 +113,19 @@ def list_variations(case: Case, values: Values) -> tuple[list[Variation], list[L
         raise RunnerError(f"challenge: too many variations ({len(found)}). Allowed: at most {_MOST}.")
     order = list(CLASSES)
     return sorted(found, key=lambda one: order.index(one.kind)), list(_distinct(left))
+
+
+def _check_key(case: Case, key: str) -> None:
+    """Check that a group of the asked configs has a key; keys within a value, such as a stage, are checked later.
+
+    Raises:
+        RunnerError: if it has not.
+    """
+    parent, _, name = key.rpartition(".")
+    within = [config.resolved if not parent else get(config.resolved, parent) for config in case.configs]
+    if any(each is None or (isinstance(each, Mapping) and name not in each) for each in within):
+        known = dict.fromkeys(dotted(place) for config in case.configs for place, _ in leaves(config.resolved))
+        raise RunnerError(unknown("key", key, known, "--vary"))
 
 
 def _setting(key: str) -> Callable[[Case, Value], Change]:

@@ -1,17 +1,21 @@
 """`runner challenge`: its question, list, budget, continuation, page and check, and bad input."""
 
+import re
 import shutil
+from collections import Counter
 
 import pytest
 from support.engines import ASKED
 
 import runner
+from runner.base.dotted_keys import split_override
 from runner.reporting.challenge.question import read_question
 from runner.reporting.challenge.words import TITLES, scope_sentences
 from runner.reporting.mathml import faulty
 from runner.reporting.stored import compose_report
 from runner.statistics.scope import first_pairs
 from runner.sweeps.challenge.case import check_case
+from runner.sweeps.challenge.combinations import combine
 from runner.sweeps.challenge.families import FAMILIES
 from runner.sweeps.challenge.question import CLASSES
 from runner.sweeps.challenge.stored import open_challenge
@@ -19,7 +23,8 @@ from runner.sweeps.challenge.table import change_values, list_variations, read_v
 
 TASK = ("robot=macro", "plant=rk4", ASKED, "trajectory=quintic", "trajectory.duration=0.5", "duration=0.6",
         "noise=thesis", "repetitions=6")  # fmt: skip
-GAINS = "controller.natural_frequency=20,40"
+GAIN = "controller.natural_frequency"
+GAINS = f"{GAIN}=20,40"
 FEW = ("--without", "engine,goal,direction,velocity,noise_kind,torque_limit,payload,friction,delay,period,model_error")
 LIST = ("--vary", "duration=0.5,2", "--vary", "gain_of_one=0.25,0.5", "--vary", "gain=0.5")
 
@@ -73,6 +78,36 @@ def test_words_of_a_difference_that_gains_make(ended):
     assert found["a motion of 1 s"].word in ("holds", "holds, weaker")
 
 
+def test_combinations_are_described_and_count_in_no_class(ended):
+    assert {one.pairs for one in ended.combined} == {ended.fresh.pairs}
+    too_fast = [one for one in ended.combined if "a motion of 0.25 s" in one.labels]  # neither gain follows it
+    others = [one for one in ended.combined if one not in too_fast]
+    assert too_fast
+    assert others
+    assert {one.effect for one in too_fast} == {None}
+    assert all(one.effect < -0.02 for one in others)  # twice the frequency follows better at each noise
+    said = next(text for text in ended.sentences if "combinations" in text)
+    assert said.startswith(f"{len(ended.combined)} combinations of two to four changes (seed 1), not tested: ")
+    assert f"the same sign in {len(others)}, within 2 % in 0, the other sign in 0 (" in said
+    assert said.endswith(f" %), a side does not work in {len(too_fast)}.")
+    assert len({frozenset(one.labels) for one in ended.combined}) == len(ended.combined)
+
+
+def test_combinations_are_balanced_and_never_set_a_key_twice(sweep):
+    found, _ = list_variations(check_case(read_question([sweep])), read_values(()))
+    combined = list(combine(found, 3))
+    assert combined == list(combine(found, 3)) != list(combine(found, 4))
+    assert {len(one.labels) for one in combined} == {2, 3, 4}
+    counts = Counter(label for one in combined for label in one.labels)
+    allowed = {one.label for one in found if one.kind in ("equivalent", "conditions")}
+    assert set(counts) <= allowed
+    assert max(counts.values()) - min(counts[label] for label in allowed) <= 2
+    for one in combined:
+        keys = [split_override(text)[0] for text in one.a]
+        assert len(keys) == len(set(keys))
+    assert list(combine([one for one in found if one.kind == "numbers"], 3)) == []
+
+
 def test_a_reversal_turns_where_both_sides_have_one_gain(ended):
     turning = next(one for one in ended.turnings if "0.25" in ended.found[one.variation].variation.label)
     (turn,) = turning.turns
@@ -102,7 +137,7 @@ def test_page_with_the_specification_curve(ended, tmp_path):
     document, _ = compose_report([ended.folder], output=tmp_path)
     assert faulty(document) == []
     titles = [section.title for section in document.sections]
-    assert titles[:2] == ["Variations", "Where it turns"]
+    assert titles[:3] == ["Variations", "Where it turns", "Several changes at once"]
     curve, table = document.sections[0].blocks
     drawn = {hint for series in curve.panels[0].series for hint in series.hints}
     assert len(drawn) == len(ended.found) == len(table.rows) - len(ended.left_out)
@@ -124,8 +159,10 @@ def test_a_budget_cuts_and_the_sentence_says_so(cli, sweep):
     words = ("challenge", sweep, "--by", "controller.natural_frequency", *FEW, *LIST)
     ending = cli(*words, "--budget", 1, "-j", 1)
     assert ending.code == 0
-    assert "Not tried within the budget of 1 variations: 9 variations." in ending.out
     found = open_challenge(ending.folder)
+    cut = f"9 variations, {len(found.combined)} combinations."
+    assert f"Not tried within the budget of 1 variation: {cut}" in ending.out
+    assert f"not tried within the budget: {cut}" in cli("compare", sweep, "--by", GAIN).out
     assert len(found.cut) == len(found.found) - 1
     again = cli("check", ending.folder, "--require-scope", "conditions")
     assert (again.code, "not tried: budget" in again.out) == (1, True)
@@ -147,9 +184,12 @@ def test_an_interrupted_challenge_is_continued_with_the_stored_runs(cli, sweep, 
         assert cli(*words).code == 130
     (folder,) = (sweep.parent.parent / "challenges").iterdir()
     assert "interrupted" in scope_sentences(open_challenge(folder))[0]
+    stored = {path: path.stat().st_mtime_ns for path in (folder.parent.parent / "shards").iterdir()}
     ending = cli(*words)
     assert (ending.code, ending.folder) == (0, folder)
-    assert "2 runs, 2 of them stored already" in ending.err
+    lines = [line for line in ending.err.splitlines() if "pairs" in line]
+    assert lines == ["runner: the asked case on fresh seeds, 12 pairs", "runner: 1 variation, 12 pairs each"]
+    assert {path: path.stat().st_mtime_ns for path in stored} == stored  # the asked case is not simulated again
 
 
 @pytest.mark.costs(2)
@@ -160,6 +200,10 @@ def test_an_interrupted_challenge_is_continued_with_the_stored_runs(cli, sweep, 
         (["--without", "noize"], "--without: unknown family 'noize'."),
         (["--without", "noize"], "Did you mean 'noise'?"),
         (["--vary", "noize=2"], "--vary: unknown family 'noize'."),
+        (["--vary", "gravty=2"], "Did you mean 'gravity'?"),
+        (["--vary", "controller.damping_ration=2"], "--vary: unknown key 'controller.damping_ration'. Allowed: "),
+        (["--vary", "controller.damping_ration=2"], "Did you mean 'controller.damping_ratio'?"),
+        (["--vary", "contoller.period=2"], "Did you mean 'controller.period'?"),
         (["--vary", "noise"], "--vary: no values ('noise'). Allowed: KEY=A,B"),
         (["--vary", "noise=much"], "challenge.noise: not a value of this family ('much')."),
         (["--budget", "0"], "--budget: not a budget ('0'). Allowed: a time such as 60s"),
@@ -223,6 +267,42 @@ def test_a_table_of_your_own(tmp_path, text, said):
 
 def test_conclusions_stand_beside_their_scope(cli, sweep, ended):
     words = ("compare", sweep, "--by", "controller.natural_frequency")
-    assert f"Not challenged: `runner challenge {sweep}` tries other choices." in cli(*words).out
+    said = rf"Not challenged: `runner challenge {sweep}` \(about \d+ s\) tries other choices\."
+    assert re.search(said, cli(*words).out)
+    assert re.search(said, runner.open_sweep(sweep).compare(by="controller.natural_frequency").summary)
     shutil.copytree(ended.folder, sweep.parent.parent / "challenges" / ended.folder.name)
     assert "Challenged: it holds for all tried numerical choices; it ends or turns with" in cli(*words).out
+
+
+@pytest.mark.costs(6)
+@pytest.mark.parametrize("kind", ["two runs", "two sweeps", "tuning"])
+def test_other_subjects_say_their_scope_beside_every_conclusion(cli, kind):
+    """Command line, page and Python name the command; after the challenge they say its sentence."""
+    if kind == "tuning":
+        search = {GAIN.replace(".", "__"): (10.0, 20.0), "minimize": "max_tracking_error"}
+        folders = [runner.tune(*TASK, **search, trials=2, workers=0).folder]
+    elif kind == "two runs":
+        folders = [runner.run(*TASK, f"{GAIN}={value}").folder for value in (20, 40)]
+    else:
+        folders = [runner.sweep(*TASK, f"{GAIN}={value}", "robot=macro", workers=0).folder for value in (20, 40)]
+    command = f"runner challenge {' '.join(map(str, folders))}"
+
+    def said():
+        abstract = compose_report(folders)[0].abstract
+        if kind == "tuning":
+            return abstract, abstract
+        return abstract, cli("compare", *folders).out, runner.compare(*folders).summary
+
+    page, *others = said()
+    assert page.count("Not challenged: the command runner challenge") == 1
+    assert all(text.count(f"`{command}` (about") == 1 for text in others if kind != "tuning")
+    ending = cli("challenge", *folders, *FEW, "--budget", 1, "-j", 1)
+    assert ending.code == 0
+    assert "Settled numerically (a step 5 times finer)." in ending.out
+    assert all(text.count("Challenged: it holds for all tried numerical choices") == 1 for text in said())
+
+
+def test_without_a_conclusion_there_is_no_scope(cli):
+    folders = [runner.run(*TASK[:-1], "repetitions=2", f"seed={seed}").folder for seed in (0, 1)]
+    assert "hallenge" not in cli("compare", *folders).out
+    assert "hallenge" not in compose_report(folders)[0].abstract

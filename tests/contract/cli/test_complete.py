@@ -49,6 +49,8 @@ def test_lists_of_options(tab):
     assert tab("sensitivity latest --metrics peak_torque,sett") == ["peak_torque,settling_time"]
     assert tab("sensitivity latest --parameters gains,m") == ["gains,masses", "gains,mismatch"]
     assert tab("doctor arm.urdf --format ") == ["config", "html"]
+    assert tab("challenge latest --without noise,de") == ["noise,delay"]
+    assert tab("challenge latest --vary no") == ["noise=", "noise_kind="]
 
 
 def test_metrics_are_read_once(monkeypatch, tab):

@@ -1,5 +1,7 @@
 """The last lines of runs and sweeps: key metrics, failures, what comes next."""
 
+import re
+
 from fixtures.stored import RUNS
 from support.engines import ASKED
 
@@ -51,7 +53,9 @@ def test_a_failed_run_tells_why_and_no_metrics(cli):
 def test_a_sweep_tells_its_counts_what_may_be_said_and_what_comes_next(cli):
     sweep = ("-m", "hydra.sweeper.workers=0", *SHORT, "controller.period=5ms,10ms")
     *_, counts, told, scope, following = cli(*sweep).err.splitlines()
-    assert scope == "runner: Not challenged: `runner challenge latest` tries other choices."
+    assert re.fullmatch(
+        r"runner: Not challenged: `runner challenge latest` \(about \d+ s\) tries other choices\.", scope
+    )
     assert counts == "runner: 2 runs: 2 made, 0 stored before, none of them failed"
     assert " % smaller with controller.period=0.005 (" in told
     assert ", exactly: nothing is drawn, integration error " in told
