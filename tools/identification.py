@@ -22,7 +22,7 @@ from runner.identification.fit import Fit, fit_logs
 from runner.identification.friction_kinds import TERMS, FrictionKind
 from runner.identification.log_rows import LogRows, log_rows
 from runner.identification.parameters import Sum, base_sums
-from runner.recordings.equations import motion_of
+from runner.recordings.equations import Motion, motion_of
 from runner.recordings.smoothing import cutoff
 from runner.robots.model import RobotModel
 
@@ -152,7 +152,12 @@ class _Friction:
 
     def values(self, kind: FrictionKind) -> FloatArray:
         """Return the coefficients in the order of a fit of the same kind."""
-        terms = {"viscous": self.viscous, "coulomb": self.coulomb, "offset": self.offset, "coulomb by load": self.by_load}
+        terms = {
+            "viscous": self.viscous,
+            "coulomb": self.coulomb,
+            "offset": self.offset,
+            "coulomb by load": self.by_load,
+        }
         return np.column_stack([terms[term] for term in TERMS[kind]]).ravel()
 
 
@@ -168,15 +173,13 @@ def _waves(random: np.random.Generator, model: RobotModel, t: FloatArray) -> lis
 def _rigid(
     model: RobotModel, base: FloatArray, sums: Sequence[Sum], q: FloatArray, dq: FloatArray, ddq: FloatArray
 ) -> FloatArray:
-    motion = motion_of(model, q, np.zeros_like(q), 1.0, 0.1)  # only its model and its regressor are used
-    motion = type(motion)(model, 1.0, 0.1, q, dq, ddq, np.sign(dq), np.zeros_like(q), motion.unusable)
+    zeros = np.zeros_like(q)
+    motion = Motion(model, 1.0, 1.0, q, dq, ddq, np.sign(dq), zeros, zeros[0], model.nq * ("",))
     Y = np.concatenate([motion.regressor(), ddq[:, :, None] * np.eye(model.nq)], axis=2)
     return np.asarray(Y[:, :, [each.column for each in sums]] @ base)
 
 
-def _log(
-    random: np.random.Generator, arm: str, drawn: _Friction, delay: float, size: float, number: int
-) -> LogRows:
+def _log(random: np.random.Generator, arm: str, drawn: _Friction, delay: float, size: float, number: int) -> LogRows:
     model, t = _model(arm), np.arange(0.0, float(random.uniform(20.0, 40.0)), _PERIOD)
     state = random.bit_generator.state
     q = _waves(random, model, t)[0]

@@ -28,7 +28,7 @@ GROUPS = {
     "Run experiments": ("run", "sweep", "status", "tune", "calibrate"),
     "Question a result": ("compare", "challenge", "check", "sensitivity", "verify"),
     "Look at results": ("results", "report", "table", "figures"),
-    "Real arms": ("doctor",),
+    "Real arms": ("doctor", "identify"),
     "Papers": ("reproduce", "study", "audit", "benchmark"),
     "Set up": ("list", "schema", "example"),
 }

@@ -56,7 +56,7 @@ class _Score:
     def __init__(self, fit: Fit) -> None:
         self._used = fit.weights > 0.0
         weights = fit.weights[self._used]
-        X = fit.system.X[np.ix_(self._used, fit.taken)] * weights[:, None]
+        X = fit.system.X[self._used][:, fit.taken] * weights[:, None]
         self._Q = np.linalg.qr(X / np.linalg.norm(X, axis=0))[0]
         self._weights, self._rest = weights, fit.rest[self._used] * weights
         self._blocks = np.unique(block_numbers(fit.system, fit.block)[self._used], return_inverse=True)[1]
@@ -150,7 +150,7 @@ class SecondMethod:
 def second_method(fit: Fit) -> SecondMethod:
     """Return a fit by ordinary least squares, and the test of its difference (Hausman, Econometrica 46(6), 1978)."""
     used, taken = fit.weights > 0.0, fit.taken
-    X, weights, rest = fit.system.X[np.ix_(used, taken)], fit.weights[used], fit.rest[used]
+    X, weights, rest = fit.system.X[used][:, taken], fit.weights[used], fit.rest[used]
     sizes = np.linalg.norm(X, axis=0)
     X = X / sizes
     plain, weighted = np.linalg.pinv(X), np.linalg.pinv(X * weights[:, None]) * weights

@@ -18,7 +18,7 @@ from numpy.typing import NDArray
 from scipy.special import stdtrit
 
 from runner.base.arrays import FloatArray
-from runner.identification.friction_kinds import SHAPES, TERMS, FrictionKind, is_shaped
+from runner.identification.friction_kinds import SHAPED, SHAPES, TERMS, FrictionKind
 from runner.identification.log_rows import LogRows
 from runner.identification.parameters import group_columns
 from runner.identification.system import Layout, State, System, linear_system
@@ -28,8 +28,8 @@ _TOLD_APART = 1e-3  # share of a column that the others must leave, or the logs 
 _OUTSIDE = 3.0  # times the usual residual of a joint, from which on a row counts less
 _EXACT = 1e-12  # of the rms of a joint's torque: a smaller residual is rounding
 _STEPS = 10
-_STEADY = 1e-8  # s, of the delay
-_SETTLED = 1e-7  # of the largest base parameter
+_STEADY = 1e-7  # s, of the delay
+_SETTLED = 1e-6  # of the largest base parameter
 _LONGEST_DELAY = 0.05  # s
 _BLOCK = 0.5  # s
 _TIMES_CORRELATION = 4.0  # a block is that many times as long as residuals are correlated
@@ -48,7 +48,7 @@ class Fit:
         within: The same without the spread between logs, shape (n,).
         white: The same for residuals that are not correlated, shape (n,).
         deviations: Standard deviations behind `halves`, shape (n,).
-        effects: What each block adds to each taken value, shape (blocks, taken): a sum has the deviation of its columns.
+        effects: What each block adds to each taken value, shape (blocks, taken).
         spread: Whether logs differ in each value by more than their own intervals explain, shape (n,).
         system: Equations about the state.
         rest: Residuals of all rows, shape (R,), in N m.
@@ -123,7 +123,7 @@ def solve_logs(
         values[layout.delay] = 0.0
         state = replace(state, values=values, delay=delay)
         weights = row_weights(system, _rest(system, state))[0]
-        if is_shaped(kind) and step < 3:
+        if kind in SHAPED and step < 3:
             state = replace(state, shapes=_best_shapes(logs, state, system, weights))
         if step > 2 and abs(change) < _STEADY and still < _SETTLED * (1.0 + np.abs(values[:nb]).max(initial=0.0)):
             break
@@ -137,7 +137,7 @@ def _told_apart(system: System, weights: FloatArray) -> tuple[list[int], FloatAr
 
 def _solved(system: System, weights: FloatArray, taken: Sequence[int]) -> FloatArray:
     used = weights > 0.0
-    X = system.X[np.ix_(used, taken)] * weights[used, None]
+    X = system.X[used][:, taken] * weights[used, None]
     sizes = np.linalg.norm(X, axis=0)
     values = np.zeros(system.X.shape[1])
     values[list(taken)] = np.linalg.lstsq(X / sizes, system.y[used] * weights[used], rcond=None)[0] / sizes
@@ -225,7 +225,7 @@ def _covariance(
     used = (weights > 0.0) & rows
     if used.sum() <= len(taken) + 1:
         return None
-    X = system.X[np.ix_(used, taken)] * weights[used, None]
+    X = system.X[used][:, taken] * weights[used, None]
     sizes = np.linalg.norm(X, axis=0)
     if not sizes.all():
         return None
@@ -260,7 +260,7 @@ def _between(
     estimates, variances = (np.full((len(logs), many), np.nan) for _ in range(2))
     for number, log in enumerate(logs) if len(logs) > 1 else ():
         rows = (system.log == log) & (weights > 0.0)
-        X = system.X[np.ix_(rows, taken)] * weights[rows, None]
+        X = system.X[rows][:, taken] * weights[rows, None]
         told = group_columns(X, range(many), _TOLD_APART)[0]
         chosen = [taken[place] for place in told]
         found = _covariance(system, rest, weights, chosen, block, rows)

@@ -18,8 +18,10 @@ import numpy as np
 
 from runner.base.arrays import FloatArray
 
-FrictionKind = Literal["coulomb", "load", "stribeck", "sigmoid"]
+FrictionKind = Literal["coulomb", "sigmoid", "load", "stribeck"]
 KINDS: tuple[FrictionKind, ...] = get_args(FrictionKind)
+"""All kinds, those with fewer terms first."""
+
 TERMS: dict[FrictionKind, tuple[str, ...]] = {
     "coulomb": ("viscous", "coulomb", "offset"),
     "load": ("viscous", "coulomb", "offset", "coulomb by load"),
@@ -37,7 +39,8 @@ WORDS: dict[FrictionKind, str] = {
     "stribeck": "viscous friction, and Coulomb friction that falls with speed (Stribeck)",
     "sigmoid": "viscous friction, and a sigmoid over speed",
 }
-_SHAPED = ("stribeck", "sigmoid")
+SHAPED: tuple[FrictionKind, ...] = ("stribeck", "sigmoid")
+"""Kinds with a speed v_s that the columns depend on."""
 
 
 @dataclass(frozen=True)
@@ -55,11 +58,6 @@ class JointSpeeds:
     sign: FloatArray
     load: FloatArray
     fastest: float
-
-
-def is_shaped(kind: FrictionKind) -> bool:
-    """Return True for a kind with a speed v_s that the columns depend on."""
-    return kind in _SHAPED
 
 
 def friction_columns(kind: FrictionKind, at: JointSpeeds, shape: float) -> FloatArray:
@@ -106,11 +104,6 @@ def term_unit(term: str, prismatic: bool) -> str:
     if term == "coulomb by load":
         return "1"
     return "N" if prismatic else "N m"
-
-
-def unit_of_speed(prismatic: bool) -> str:
-    """Return the unit of a joint's speed."""
-    return "m/s" if prismatic else "rad/s"
 
 
 def friction_at_rest(kind: FrictionKind, values: Sequence[float], load: FloatArray) -> FloatArray:

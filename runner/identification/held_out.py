@@ -79,7 +79,7 @@ def predict_held_out(fit: Fit, logs: Sequence[LogRows], weights: FloatArray | No
     if weights is None:
         weights = joint_weights(fit)
     used = fit.weights > 0.0
-    X, y = trained.X[np.ix_(used, columns)] * fit.weights[used, None], trained.y[used] * fit.weights[used]
+    X, y = trained.X[used][:, columns] * fit.weights[used, None], trained.y[used] * fit.weights[used]
     sizes = np.maximum(np.linalg.norm(X, axis=0), 1e-300)
     X = X / sizes
     whole, right = X.T @ X, X.T @ y
@@ -133,6 +133,7 @@ def _errors(system: System, rows: NDArray[np.bool_], values: FloatArray) -> Floa
         terms = TERMS[layout.kind]
         dry = [number for number, term in enumerate(terms) if term not in ("viscous", "offset")]
         away = errors[rest] + friction[:, dry].sum(axis=1)
-        level = friction_at_rest(layout.kind, values[place].tolist(), np.abs(X[rest, : layout.base] @ values[: layout.base]))  # fmt: skip
+        load = np.abs(X[rest, : layout.base] @ values[: layout.base])
+        level = friction_at_rest(layout.kind, values[place].tolist(), load)
         errors[rest] = np.sign(away) * np.maximum(np.abs(away) - level, 0.0)
     return errors

@@ -61,9 +61,9 @@ class LogRows:
     def torque(self, delay: float) -> FloatArray:
         """Return the filtered torques as they were a delay later, shape (M, nq), in N m."""
         motion = self.motion
-        torques = np.nan_to_num(motion.torques)
+        torques: FloatArray = np.nan_to_num(motion.torques)
         if delay:
-            t = motion.period * np.arange(len(torques))
+            t = np.asarray(motion.period * np.arange(len(torques)), dtype=np.float64)
             torques = evenly(t, torques, np.clip(t + delay, t[0], t[-1]))
         return motion.behind_filter(torques)
 
@@ -95,7 +95,7 @@ def read_rows(
     """
     joints = model.joint_names
     for kind in ("position", "torque"):
-        missing = [joint for joint in joints if Signal(kind, joint) not in recording.signals]  # type: ignore[arg-type]
+        missing = [joint for joint in joints if Signal(kind, joint) not in recording.signals]
         if missing and (kind == "position" or len(missing) == len(joints)):
             raise RunnerError(f"{recording.path}: no {kind} of {', '.join(missing)} is recorded. Needed: all joints.")
     if recording.duration < SHORTEST:

@@ -86,7 +86,7 @@ def _states(model: RobotModel) -> Motion:
     spread = np.outer(np.arange(1, count + 1), roots[: 3 * nq]) % 1.0
     q, dq, ddq = (2.0 * part - 1.0 for part in np.split(spread, 3, axis=1))
     q = q * np.where(model.prismatic, 1.0, np.pi)
-    return Motion(model, 1.0, 1.0, q, 3.0 * dq, 9.0 * ddq, np.sign(dq), np.zeros_like(q), nq * ("",))
+    return Motion(model, 1.0, 1.0, q, 3.0 * dq, 9.0 * ddq, np.sign(dq), np.zeros_like(q), np.zeros(nq), nq * ("",))
 
 
 def group_columns(X: FloatArray, order: Sequence[int], tolerance: float) -> tuple[list[int], FloatArray]:
@@ -100,7 +100,7 @@ def group_columns(X: FloatArray, order: Sequence[int], tolerance: float) -> tupl
     Returns:
         The chosen columns, and for each the factors of all n parameters in its sum, shape (number chosen, n).
     """
-    R = np.linalg.qr(X, mode="r")
+    R: FloatArray = np.linalg.qr(X)[1]
     sizes = np.linalg.norm(R, axis=0)
     largest = sizes.max(initial=0.0)
     basis = np.zeros((len(R), 0))
@@ -116,8 +116,10 @@ def group_columns(X: FloatArray, order: Sequence[int], tolerance: float) -> tupl
             taken.append(column)
             basis = np.column_stack([basis, left / size])
     scale = sizes[taken]
-    factors = np.linalg.lstsq(R[:, taken] / scale, R, rcond=None)[0] / scale[:, None] if taken else R[:0]
-    factors[:, taken] = np.eye(len(taken))
+    factors = np.zeros((len(taken), R.shape[1]))
+    if taken:
+        factors[:] = np.linalg.lstsq(R[:, taken] / scale, R, rcond=None)[0] / scale[:, None]
+        factors[:, taken] = np.eye(len(taken))
     return taken, factors
 
 

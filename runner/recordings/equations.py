@@ -44,6 +44,8 @@ class Motion:
         ddq: Accelerations, shape (N, nq), in rad/s^2.
         signs: Direction of motion, shape (N, nq): 1, -1, or between them where a joint turns round.
         torques: Shape (N, nq), in N m; NaN throughout for a joint without.
+        acceleration_noise: Noise of the filtered accelerations that follows from that of the positions, shape (nq,), in
+            rad/s^2; 0 if they are recorded.
         unusable: The reason why a joint's torque cannot be used, by joint; empty if it can.
     """
 
@@ -55,6 +57,7 @@ class Motion:
     ddq: FloatArray
     signs: FloatArray
     torques: FloatArray
+    acceleration_noise: FloatArray
     unusable: tuple[str, ...]
 
     @cached_property
@@ -67,8 +70,7 @@ class Motion:
     @cached_property
     def times(self) -> FloatArray:
         """Times of the kept rows, shape (M,), in s."""
-        times: FloatArray = self.kept * self.period
-        return times
+        return np.asarray(self.kept * self.period, dtype=np.float64)
 
     def behind_filter(self, signals: FloatArray) -> FloatArray:
         """Return signals behind the low-pass at the kept rows, shapes (N, ...) to (M, ...)."""
@@ -133,12 +135,16 @@ def motion_of(
         signs = np.clip(speed / np.maximum(0.5 * period * np.abs(derivative(speed, period)), 1e-12), -1.0, 1.0)
     else:
         signs = np.sign(speeds)
+    # White noise above the low-pass has, behind two derivatives, a variance of 2 T sigma^2 (2 pi)^4 f^5 / 5 up to f.
+    above = 1.4826 * np.median(np.abs(q - smooth), axis=0) / np.sqrt(1.0 - 2.0 * first * period)
+    noise = above * (2.0 * np.pi) ** 2 * np.sqrt(0.4 * period * frequency**5)
     unusable = tuple(_unusable(*pair) for pair in zip(measured.T, np.abs(speed).T, strict=True))
     q, torques, signs = smooth[::every], *(low_pass(signals, period, first)[::every] for signals in (torques, signs))
     period *= every
     dq = derivative(q, period) if speeds is None else speed[::every]
     ddq = derivative(dq, period) if accelerations is None else low_pass(accelerations, period / every, first)[::every]
-    return Motion(model, period, frequency, q, dq, ddq, signs, torques, unusable)
+    noise = noise if accelerations is None else np.zeros(model.nq)
+    return Motion(model, period, frequency, q, dq, ddq, signs, torques, noise, unusable)
 
 
 def _unusable(torques: FloatArray, speed: FloatArray) -> str:
