@@ -17,7 +17,7 @@ from numpy.typing import NDArray
 
 from runner.config.compose.compose import compose
 from runner.config.validation import validate
-from runner.identification.checks import find_flags
+from runner.identification.checks import find_flags, second_method
 from runner.identification.fit import Fit, fit_logs
 from runner.identification.friction_kinds import TERMS, FrictionKind
 from runner.identification.log_rows import LogRows, log_rows
@@ -105,7 +105,7 @@ def examine_world(seed: int) -> World:
     wanted = np.concatenate([base, drawn.values(fitted) if right else np.full(model.nq * len(TERMS[fitted]), np.nan)])
     known = [place for place in fit.taken if place < len(wanted) and np.isfinite(wanted[place])]
     known = [place for place in known if _is_alone(fit, place)]
-    hit = np.abs(fit.state.values[known] - wanted[known]) <= fit.halves[known]
+    hit = np.abs(fit.state.values[known] - wanted[known]) <= second_method(fit).halves[known]
     flags = find_flags(fit, logs)
     label = f"{truth} as {fitted}, {count} logs, {arm}"
     return World(right, count, float(hit.mean()), len(known), bool(flags), label)

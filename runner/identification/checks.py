@@ -11,7 +11,7 @@ from runner.identification.fit import Fit, block_numbers
 from runner.identification.friction_kinds import other_columns
 from runner.identification.log_rows import LogRows, payload_columns
 
-_DOUBT = 0.04  # probability that a check of a right kind of friction finds anything
+_DOUBT = 0.02  # probability that a check of a right kind of friction finds anything
 _PAYLOAD_DOUBT = 1e-4  # probability for a change of payload, of which many times are tried
 _TRIED = 40  # times of a change of payload
 _LEAST_PAYLOAD = 0.05  # kg
@@ -140,11 +140,13 @@ class SecondMethod:
         values: Values of all columns, shape (n,); NaN for those that are not taken.
         differences: The difference of the fit from it, over the deviation of this difference, shape (n,).
         excess: Squared difference beyond what chance explains, shape (n,).
+        halves: Half-widths of the 95 % intervals with this excess, shape (n,).
     """
 
     values: FloatArray
     differences: FloatArray
     excess: FloatArray
+    halves: FloatArray
 
 
 def second_method(fit: Fit) -> SecondMethod:
@@ -167,4 +169,4 @@ def second_method(fit: Fit) -> SecondMethod:
     differences[taken] = change / np.maximum(deviation, 1e-300)
     limit = float(stdtrit(freedom, 0.975))
     excess[taken] = np.maximum(change**2 - (limit * deviation) ** 2, 0.0)
-    return SecondMethod(values, differences, excess)
+    return SecondMethod(values, differences, excess, np.sqrt(fit.halves**2 + excess))

@@ -263,13 +263,11 @@ def _between(
         X = system.X[rows][:, taken] * weights[rows, None]
         told = group_columns(X, range(many), _TOLD_APART)[0]
         chosen = [taken[place] for place in told]
-        found = _covariance(system, rest, weights, chosen, block, rows)
-        if found is None:
-            continue
-        # The residuals of the common fit: a change of its values that fits this log alone.
-        alone = replace(system, y=rest)
-        values = _solved(alone, np.where(rows, weights, 0.0), chosen)
-        estimates[number, told], variances[number, told] = values[chosen], np.sum(found[0] ** 2, axis=0)
+        # The residuals of the common fit give the changes of its values that fit this log alone.
+        values = _solved(replace(system, y=rest), np.where(rows, weights, 0.0), chosen)
+        found = _covariance(system, rest - system.X @ values, weights, chosen, block, rows)
+        if found is not None:
+            estimates[number, told], variances[number, told] = values[chosen], np.sum(found[0] ** 2, axis=0)
     known = np.isfinite(variances) & (variances > 0.0)
     count = known.sum(axis=0)
     weight = np.where(known, 1.0 / np.where(known, variances, 1.0), 0.0)

@@ -10,7 +10,7 @@ import numpy as np
 from runner.base import progress
 from runner.base.arrays import FloatArray
 from runner.base.errors import RunnerError
-from runner.identification.checks import find_flags, find_payload_changes, second_method
+from runner.identification.checks import SecondMethod, find_flags, find_payload_changes, second_method
 from runner.identification.fit import Fit, fit_logs, name_of
 from runner.identification.friction_kinds import KINDS, SHAPED, TERMS, FrictionKind, term_unit
 from runner.identification.held_out import HeldOut, file_share, joint_weights, predict_held_out
@@ -289,7 +289,6 @@ def identify(
         best = places[_chosen([tried[place][1] for place in places])]
     fit, held, rows, at = tried[best]
     second = second_method(fit)
-    halves = np.sqrt(fit.halves**2 + second.excess)
     follows = _follows(fit, rows, question.model)
     alternatives = [
         Alternative(
@@ -314,7 +313,7 @@ def identify(
         forced=kind is not None,
         frequency=at,
         parameters=[
-            _parameter(question, sums, fit, column, halves, second.values, second.excess, base)
+            _parameter(question, sums, fit, column, second, base)
             for column in fit.taken
             if column != layout.delay and column not in wide
         ],
@@ -367,8 +366,7 @@ def _file_values(question: Question, sums: Sequence[Sum]) -> FloatArray:
 
 
 def _parameter(
-    question: Question, sums: Sequence[Sum], fit: Fit, column: int, halves: FloatArray, second: FloatArray,
-    excess: FloatArray, base: FloatArray,
+    question: Question, sums: Sequence[Sum], fit: Fit, column: int, second: SecondMethod, base: FloatArray,
 ) -> Parameter:  # fmt: skip
     layout, joints = fit.state.layout, question.model.joint_names
     names = [each.name for each in sums]
@@ -378,9 +376,10 @@ def _parameter(
     place = fit.taken.index(column)
     others = [other for other in range(layout.delay) if other not in fit.taken and place in _stand_for(fit, other)]
     return Parameter(
-        name_of(layout, column, names, joints), unit, float(fit.state.values[column]), float(halves[column]),
-        float(fit.white[column]), float(base[column]) if inertial else None, float(second[column]),
-        bool(excess[column] > 0.0), bool(fit.spread[column]), [name_of(layout, each, names, joints) for each in others],
+        name_of(layout, column, names, joints), unit, float(fit.state.values[column]), float(second.halves[column]),
+        float(fit.white[column]), float(base[column]) if inertial else None, float(second.values[column]),
+        bool(second.excess[column] > 0.0), bool(fit.spread[column]),
+        [name_of(layout, each, names, joints) for each in others],
     )  # fmt: skip
 
 
