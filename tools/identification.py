@@ -86,7 +86,7 @@ def _sums(arm: str) -> list[Sum]:
 
 
 def examine_world(seed: int) -> World:
-    """Return what is found in a world."""
+    """Return the coverage and the flags of a world."""
     random = np.random.default_rng(seed)
     arm = str(random.choice(_ARMS))
     right = seed % 3 != 0

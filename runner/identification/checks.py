@@ -82,7 +82,7 @@ class _Score:
 
 
 def find_flags(fit: Fit, logs: Sequence[LogRows]) -> list[Flag]:
-    """Return what the residuals of each joint follow, though the kind of friction should have explained it."""
+    """Return the curves that the residuals of each joint follow in spite of the friction of the fit."""
     if _is_exact(fit):
         return []
     score, tested = _Score(fit), []

@@ -263,7 +263,7 @@ def _between(
         X = system.X[rows][:, taken] * weights[rows, None]
         told = group_columns(X, range(many), _TOLD_APART)[0]
         chosen = [taken[place] for place in told]
-        # The residuals of the common fit give the changes of its values that fit this log alone.
+        # The residuals of the common fit give the changes of its values that fit only this log.
         values = _solved(replace(system, y=rest), np.where(rows, weights, 0.0), chosen)
         found = _covariance(system, rest - system.X @ values, weights, chosen, block, rows)
         if found is not None:

@@ -17,7 +17,7 @@ from runner.identification.log_rows import LogRows
 from runner.identification.system import System, linear_system
 
 _STRETCHES = 8  # of a log, or of two logs together
-_LOGS = 3  # from so many logs on, each is a stretch
+_LOGS = 3  # logs: with these or more, each is a stretch
 _APART = 0.2  # s between a held-out stretch and the rows of its fit, which the low-pass mixes
 _ROUNDING = 1e-10  # of the largest eigenvalue
 
@@ -120,7 +120,7 @@ def file_share(system: System, base: FloatArray, joint: int | None = None) -> fl
 
 
 def _errors(system: System, rows: NDArray[np.bool_], values: FloatArray) -> FloatArray:
-    """Return what values miss of the torques in some rows; at rest what the friction does not hold."""
+    """Return the errors of values in some rows; at rest only the part that friction does not hold."""
     layout = system.layout
     X, y, joint_of, moving = system.X[rows], system.y[rows], system.joint[rows], system.moving[rows]
     errors: FloatArray = y - X @ values

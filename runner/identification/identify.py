@@ -137,7 +137,7 @@ class Examination:
 
 
 def examine_logs(question: Question) -> Examination:
-    """Return what logs can determine, from their motion and a fit with viscous and Coulomb friction."""
+    """Return the parameters that logs can determine, from their motion and a fit with viscous and Coulomb friction."""
     sums = base_sums(question.model, question.rotors)
     progress.begin("reading the equations of motion")
     rows = _rows(question, sums, _usual_cutoff(question))
@@ -186,7 +186,10 @@ def _unusual(model: RobotModel, rows: LogRows) -> Iterator[str]:
         if share < _NOISY and not rows.motion.creeps(joint)
     ]
     if weak:
-        yield f"the acceleration is small beside the noise of the positions: {', '.join(weak)}; inertias come out small"
+        yield (
+            f"the acceleration is small compared with the noise of the positions: {', '.join(weak)}; inertias come out "
+            "small"
+        )
 
 
 def _untold(question: Question, sums: Sequence[Sum], fit: Fit) -> Iterator[Untold]:

@@ -72,7 +72,7 @@ class LogRows:
         return self.motion.behind_filter(derivative(torques, self.motion.period))
 
     def speeds(self, joint: int, load: FloatArray) -> JointSpeeds:
-        """Return what the friction of a joint depends on."""
+        """Return the signals that the friction of a joint depends on."""
         motion = self.motion
         return JointSpeeds(motion.dq[:, joint], motion.signs[:, joint], load, float(motion.fastest[joint]))
 

@@ -11,7 +11,7 @@ from runner.base.arrays import FloatArray
 
 
 def block_scores(own: FloatArray, taken: FloatArray, rest: FloatArray, blocks: NDArray[np.intp]) -> FloatArray:
-    """Return what each block adds to the normal equations, shape (number of blocks, n).
+    """Return the contribution of each block to the normal equations, shape (number of blocks, n).
 
     Args:
         own: Columns of the fit, shape (N, n).

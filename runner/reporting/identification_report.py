@@ -59,7 +59,7 @@ def _key_numbers(found: Identification) -> list[tuple[str, str, str]]:
 
 
 def accuracy(found: Identification) -> Table:
-    """Return the errors of unseen torques by joint, beside those of the robot's file."""
+    """Return the errors of unseen torques by joint, next to those of the robot's file."""
     rows: list[list[Cell]] = [
         [joint.joint, *(Number(100.0 * share, digits=2) for share in (joint.held_out, joint.file)), Number(joint.rows),
          *(Number(100.0 * share, digits=2) for share in (joint.left_out, joint.outside))]
