@@ -15,6 +15,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import NDArray
+from scipy.linalg import cho_factor, cho_solve
 from scipy.special import stdtrit
 
 from runner.base.arrays import FloatArray
@@ -132,15 +133,25 @@ def solve_logs(
 
 def _told_apart(system: System, weights: FloatArray) -> tuple[list[int], FloatArray]:
     used = weights > 0.0
-    return group_columns(system.X[used] * weights[used, None], range(system.X.shape[1]), _TOLD_APART)
+    X = system.X[used] * weights[used, None]
+    sizes = np.maximum(np.linalg.norm(X, axis=0), 1e-300)
+    scaled = X / sizes
+    values, vectors = np.linalg.eigh(scaled.T @ scaled)
+    root = np.sqrt(np.maximum(values, 0.0))[:, None] * vectors.T  # it has the products of the columns of X
+    return group_columns(root * sizes, range(X.shape[1]), _TOLD_APART)
 
 
 def _solved(system: System, weights: FloatArray, taken: Sequence[int]) -> FloatArray:
+    """Return the values by the normal equations; a second step removes their rounding."""
     used = weights > 0.0
-    X = system.X[used][:, taken] * weights[used, None]
+    X, y = system.X[used][:, taken] * weights[used, None], system.y[used] * weights[used]
     sizes = np.linalg.norm(X, axis=0)
+    X = X / sizes
+    factor = cho_factor(X.T @ X)
+    found = cho_solve(factor, X.T @ y)
+    found += cho_solve(factor, X.T @ (y - X @ found))
     values = np.zeros(system.X.shape[1])
-    values[list(taken)] = np.linalg.lstsq(X / sizes, system.y[used] * weights[used], rcond=None)[0] / sizes
+    values[list(taken)] = found / sizes
     return values
 
 
@@ -170,24 +181,30 @@ def _best_shapes(logs: Sequence[LogRows], state: State, system: System, weights:
     layout, shapes = state.layout, state.shapes.copy()
     inertial = system.y - system.X[:, : layout.base] @ state.values[: layout.base]
     inertial -= system.X[:, layout.delay] * state.values[layout.delay]
-    loads = [state.loads(rows) for rows in logs]
+    filtered = [_columns_of_shapes(rows, state) for rows in logs]
     for joint in range(layout.nq):
         own = (system.joint == joint) & (weights > 0.0)
         if not own.any():
             continue
-        least = np.inf
-        for shape in SHAPES:
-            tried = replace(state, shapes=np.full(layout.nq, shape))
-            columns = np.concatenate(
-                [rows.motion.behind_filter(tried.friction_columns(rows, joint, load[:, joint]))
-                 for rows, load in zip(logs, loads, strict=True) if not rows.motion.unusable[joint]]
-            )  # fmt: skip
-            used = own[system.joint == joint]
-            X, y = columns[used] * weights[own, None], inertial[own] * weights[own]
-            left = float(np.sum((y - X @ np.linalg.lstsq(X, y, rcond=None)[0]) ** 2))
-            if left < least:
-                least, shapes[joint] = left, shape
+        with_torque = [each for each, rows in zip(filtered, logs, strict=True) if not rows.motion.unusable[joint]]
+        columns = np.concatenate([each[:, :, joint] for each in with_torque])[own[system.joint == joint]]
+        y, w = inertial[own] * weights[own], weights[own, None]
+        tried = [np.linalg.qr(columns[:, number] * w)[0] for number in range(len(SHAPES))]
+        shapes[joint] = SHAPES[int(np.argmax([float(np.sum((Q.T @ y) ** 2)) for Q in tried]))]
     return shapes
+
+
+def _columns_of_shapes(rows: LogRows, state: State) -> FloatArray:
+    """Return the filtered columns of friction for each v_s that is tried, shape (M, shapes, nq, terms)."""
+    layout = state.layout
+    no_load = np.zeros(len(rows.motion.q))
+    columns = [
+        replace(state, shapes=np.full(layout.nq, shape)).friction_columns(rows, joint, no_load)
+        for shape in SHAPES
+        for joint in range(layout.nq)
+    ]
+    found = rows.motion.behind_filter(np.hstack(columns))
+    return found.reshape(len(found), len(SHAPES), layout.nq, -1)
 
 
 def _with_intervals(

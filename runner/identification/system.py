@@ -100,8 +100,8 @@ def linear_system(logs: Sequence[LogRows], state: State, with_delay: bool) -> Sy
     layout = state.layout
     parts = []
     for number, rows in enumerate(logs):
-        loads, y = state.loads(rows), rows.torque(state.delay)
-        raw = rows.Y @ state.values[: layout.base]
+        y, raw = rows.torque(state.delay), rows.Y @ state.values[: layout.base]
+        loads = np.abs(raw)
         columns = [state.friction_columns(rows, joint, loads[:, joint]) for joint in range(layout.nq)]
         for joint, own in enumerate(columns):
             raw[:, joint] += own @ state.values[layout.friction(joint)]
