@@ -77,7 +77,7 @@ def accuracy(found: Identification) -> Table:
 def parameters(found: Identification) -> Table:
     """Return the determined parameters with their intervals."""
     rows: list[list[Cell]] = [
-        [_full_name(one), one.unit, Number(one.value),
+        [_full_name(one), _unit(one), Number(one.value),
          Number(None, one.value - one.half, one.value + one.half),
          "" if one.file is None else Number(one.file),
          ", ".join(word for word, said in (("methods differ", one.differs), ("logs differ", one.spread)) if said)]
@@ -89,6 +89,10 @@ def parameters(found: Identification) -> Table:
 
 def _full_name(one: Parameter) -> str:
     return f"{one.name} (with {', '.join(one.stands_for)})" if one.stands_for else one.name
+
+
+def _unit(one: Parameter) -> str:
+    return one.unit.replace("^2", "²")
 
 
 def _untold(found: Identification) -> list[Block]:
@@ -146,7 +150,7 @@ def _alternatives(found: Identification) -> Table:
 
 def _second(found: Identification) -> list[Block]:
     rows: list[list[Cell]] = [
-        [one.name, one.unit, Number(one.value), Number(one.second), Number(one.half), Number(one.white),
+        [one.name, _unit(one), Number(one.value), Number(one.second), Number(one.half), Number(one.white),
          "more than chance" if one.differs else ""]
         for one in found.parameters
     ]  # fmt: skip
