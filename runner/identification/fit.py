@@ -33,7 +33,7 @@ _STEADY = 1e-7  # s, of the delay
 _SETTLED = 1e-6  # of the largest base parameter
 _LONGEST_DELAY = 0.05  # s
 _BLOCK = 0.5  # s
-_TIMES_CORRELATION = 4.0  # a block is that many times as long as residuals are correlated
+_TIMES_CORRELATION = 6.0  # a block is that many times as long as residuals are correlated
 _FEWEST_BLOCKS = 20
 
 
