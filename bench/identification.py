@@ -20,8 +20,9 @@ from numpy.typing import NDArray
 
 from runner.config.compose.compose import compose
 from runner.config.validation import validate
+from runner.identification.examination import examine_logs, read_question
 from runner.identification.fit import fit_logs
-from runner.identification.identify import examine_logs, identify, read_question
+from runner.identification.identify import identify
 from runner.identification.log_rows import log_rows
 from runner.identification.parameters import Sum, base_sums
 from runner.recordings.equations import motion_of

@@ -76,8 +76,8 @@ def identify(
     """
     from runner.config.compose.compose import compose
     from runner.config.validation import validate
+    from runner.identification.examination import examine_logs, read_question
     from runner.identification.friction_kinds import KINDS
-    from runner.identification.identify import examine_logs, read_question
     from runner.identification.identify import identify as fit
     from runner.store.kinds import note
 

@@ -40,7 +40,8 @@ def run(options: Namespace) -> int:
     from runner.config.compose.compose import compose
     from runner.config.compose.files import outputs_dir
     from runner.config.validation import validate
-    from runner.identification.identify import examine_logs, identify, read_question
+    from runner.identification.examination import examine_logs, read_question
+    from runner.identification.identify import identify
     from runner.identification.words import answer_lines, examination_lines, method_lines
     from runner.reporting.identification_report import parameters
     from runner.reporting.stored import write

@@ -3,8 +3,8 @@
 from collections.abc import Iterator, Sequence
 
 from runner.base.quantities import quantity
+from runner.identification.examination import Examination
 from runner.identification.friction_kinds import WORDS
-from runner.identification.identify import Examination
 from runner.identification.result import Identification, Parameter
 
 BEHIND_GEARS = (
