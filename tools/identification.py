@@ -5,8 +5,7 @@ those of the equations of motion with other masses than the file's, so the truth
 """
 
 import os
-import sys
-import time
+import resource
 from collections.abc import Sequence
 from concurrent.futures import ProcessPoolExecutor
 from dataclasses import dataclass
@@ -51,7 +50,7 @@ class World:
 
 def main() -> bool:
     """Print the shares; return whether each lies in the wanted range."""
-    worlds, begun = int(os.environ.get("WORLDS", _WORLDS)), time.process_time()
+    worlds = int(os.environ.get("WORLDS", _WORLDS))
     print(f"{worlds} worlds, seeds {_SEED} to {_SEED + worlds - 1}")
     with ProcessPoolExecutor(os.cpu_count()) as pool:
         found = list(pool.map(examine_world, range(_SEED, _SEED + worlds), chunksize=4))
@@ -71,7 +70,8 @@ def main() -> bool:
         own = [world for world in found if world.label == label]
         shares = [float(np.mean([getattr(world, name) for world in own])) for name in ("covered", "flagged")]
         print(f"    {label:40} {len(own):4}  {shares[0]:6.1%} {shares[1]:6.1%}")
-    print(f"CPU time of this process: {time.process_time() - begun:.0f} s", file=sys.stderr)
+    used = resource.getrusage(resource.RUSAGE_CHILDREN)
+    print(f"  CPU time: {(used.ru_utime + used.ru_stime) / 60.0:.1f} min")
     return met
 
 

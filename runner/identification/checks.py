@@ -4,6 +4,7 @@ from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 
 import numpy as np
+from numpy.typing import NDArray
 from scipy.special import stdtr, stdtrit
 
 from runner.base.arrays import FloatArray
@@ -139,13 +140,15 @@ class SecondMethod:
     Attributes:
         values: Values of all columns, shape (n,); NaN for those that are not taken.
         differences: The difference of the fit from it, over the deviation of this difference, shape (n,).
-        excess: Squared difference beyond what chance explains, shape (n,).
+        excess: Squared difference beyond 95 % of what chance explains, shape (n,).
+        differs: Whether chance makes such a difference in less than 1 % of cases, shape (n,).
         halves: Half-widths of the 95 % intervals with this excess, shape (n,).
     """
 
     values: FloatArray
     differences: FloatArray
     excess: FloatArray
+    differs: NDArray[np.bool_]
     halves: FloatArray
 
 
@@ -169,4 +172,5 @@ def second_method(fit: Fit) -> SecondMethod:
     differences[taken] = change / np.maximum(deviation, 1e-300)
     limit = float(stdtrit(freedom, 0.975))
     excess[taken] = np.maximum(change**2 - (limit * deviation) ** 2, 0.0)
-    return SecondMethod(values, differences, excess, np.sqrt(fit.halves**2 + excess))
+    differs = np.nan_to_num(np.abs(differences)) > float(stdtrit(freedom, 0.995))
+    return SecondMethod(values, differences, excess, differs, np.sqrt(fit.halves**2 + excess))

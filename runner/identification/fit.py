@@ -16,7 +16,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 from numpy.typing import NDArray
 from scipy.linalg import cho_factor, cho_solve
-from scipy.special import stdtrit
+from scipy.special import chdtrc, stdtrit
 
 from runner.base.arrays import FloatArray
 from runner.identification.friction_kinds import SHAPED, SHAPES, TERMS, FrictionKind
@@ -35,6 +35,7 @@ _LONGEST_DELAY = 0.05  # s
 _BLOCK = 0.5  # s
 _TIMES_CORRELATION = 6.0  # a block is that many times as long as residuals are correlated
 _FEWEST_BLOCKS = 20
+_CHANCE = 0.001  # probability that equal logs are said to differ in a value
 
 
 @dataclass(frozen=True)
@@ -223,12 +224,12 @@ def _with_intervals(
         deviation = np.linalg.norm(effects, axis=0)
         within[place] = stdtrit(freedom, 0.975) * deviation
         white[place] = 1.96 * plain
-        extra, own_freedom = _between(system, rest, weights, taken, block)
+        extra, own_freedom, differing = _between(system, rest, weights, taken, block)
         variance = deviation**2 + extra
         mixed = variance**2 / np.maximum(deviation**4 / freedom + extra**2 / own_freedom, 1e-300)
         halves[place] = stdtrit(np.maximum(mixed, 1.0), 0.975) * np.sqrt(variance)
         deviations[place] = np.sqrt(variance)
-        spread[place] = extra > deviation**2
+        spread[place] = differing
     return Fit(
         state, taken, factors, halves, within, white, deviations, effects, spread, system, rest, weights, block, outside
     )
@@ -271,8 +272,8 @@ def block_numbers(system: System, block: float) -> NDArray[np.intp]:
 
 def _between(
     system: System, rest: FloatArray, weights: FloatArray, taken: Sequence[int], block: float
-) -> tuple[FloatArray, FloatArray]:
-    """Return the variance that differences between logs add to each value, and its degrees of freedom."""
+) -> tuple[FloatArray, FloatArray, NDArray[np.bool_]]:
+    """Return the variance that differences between logs add, its degrees of freedom, and if they exceed chance."""
     logs, many = np.unique(system.log), len(taken)
     estimates, variances = (np.full((len(logs), many), np.nan) for _ in range(2))
     for number, log in enumerate(logs) if len(logs) > 1 else ():
@@ -294,7 +295,9 @@ def _between(
     Q = np.sum(weight * (values - mean) ** 2, axis=0)
     scale = np.maximum(whole - np.sum(weight**2, axis=0) / whole, 1e-300)
     extra = np.where(count > 1, np.maximum(0.0, (Q - (count - 1)) / scale), 0.0)
-    return extra * np.sum((weight / whole) ** 2, axis=0), np.maximum(count - 1.0, 1.0)
+    freedom = np.maximum(count - 1.0, 1.0)
+    differing: NDArray[np.bool_] = (count > 1) & (chdtrc(freedom, Q) < _CHANCE)
+    return extra * np.sum((weight / whole) ** 2, axis=0), freedom, differing
 
 
 def _block_length(system: System, rest: FloatArray, weights: FloatArray) -> float:

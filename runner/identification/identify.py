@@ -176,7 +176,7 @@ def _parameter(
     return Parameter(
         name_of(layout, column, names, joints), unit, float(fit.state.values[column]), float(second.halves[column]),
         float(fit.white[column]), float(base[column]) if inertial else None, float(second.values[column]),
-        bool(second.excess[column] > 0.0), bool(fit.spread[column]),
+        bool(second.differs[column]), bool(fit.spread[column]),
         [name_of(layout, each, names, joints) for each in others],
     )  # fmt: skip
 

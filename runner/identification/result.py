@@ -30,8 +30,8 @@ class Parameter:
         white: The same if residuals were not correlated, as most tools take them.
         file: The value of the robot's file; None for friction.
         second: The value of ordinary least squares.
-        differs: True if both methods differ by more than chance explains; this difference is in `half`.
-        spread: True if the logs differ by more than their own intervals explain; this spread is in `half`.
+        differs: True if both methods differ as chance makes them in less than 1 % of cases; `half` contains it.
+        spread: True if the logs differ as chance makes them in less than 0.1 % of cases; `half` contains it.
         stands_for: Names of parameters that the logs cannot tell from this one.
     """
 
