@@ -21,6 +21,7 @@ NAMES = (
     "cold_start",
     "reproduce",
     "sweep",
+    "identification",
 )
 _AGAINST_PYBULLET = ("tick", "laws", "cold_start")  # they time its calls, or take an arm of its package
 

@@ -6,8 +6,8 @@
     'ok'
 
 `run`, `sweep`, `tune` and `calibrate` do what the commands do, `report` writes a report, `compare` compares runs or
-sweeps, `challenge` asks for which choices an answer holds; `open_run`, `open_sweep`, `open_tuning` and
-`open_challenge` open what is stored. docs/python.md shows them at work.
+sweeps, `challenge` asks for which choices an answer holds, `identify` fits an arm to logs; `open_run`, `open_sweep`,
+`open_tuning`, `open_challenge` and `open_identification` open what is stored. docs/python.md shows them at work.
 """
 
 from importlib import import_module
@@ -16,7 +16,17 @@ from typing import TYPE_CHECKING, Any
 if TYPE_CHECKING:
     from runner.api.challenge import Challenge, challenge
     from runner.api.commands import calibrate, run, sweep, tune
-    from runner.api.results import Report, compare, open_challenge, open_run, open_sweep, open_tuning, report
+    from runner.api.identification import Identification, identify
+    from runner.api.results import (
+        Report,
+        compare,
+        open_challenge,
+        open_identification,
+        open_run,
+        open_sweep,
+        open_tuning,
+        report,
+    )
     from runner.api.run import Run
     from runner.api.sweep import Sweep
     from runner.api.tuning import Tuning
@@ -27,6 +37,7 @@ if TYPE_CHECKING:
 __all__ = [
     "Calibration",
     "Challenge",
+    "Identification",
     "Metric",
     "Report",
     "Run",
@@ -36,7 +47,9 @@ __all__ = [
     "calibrate",
     "challenge",
     "compare",
+    "identify",
     "open_challenge",
+    "open_identification",
     "open_run",
     "open_sweep",
     "open_tuning",
@@ -48,6 +61,7 @@ __all__ = [
 _PLACES = {
     "Calibration": "runner.store",
     "Challenge": "runner.api.challenge",
+    "Identification": "runner.api.identification",
     "Metric": "runner.store.record",
     "Report": "runner.api.results",
     "Run": "runner.api.run",
@@ -57,7 +71,9 @@ _PLACES = {
     "calibrate": "runner.api.commands",
     "challenge": "runner.api.challenge",
     "compare": "runner.api.results",
+    "identify": "runner.api.identification",
     "open_challenge": "runner.api.results",
+    "open_identification": "runner.api.results",
     "open_run": "runner.api.results",
     "open_sweep": "runner.api.results",
     "open_tuning": "runner.api.results",

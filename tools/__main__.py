@@ -8,6 +8,7 @@ from runner.base.engines import quiet_environment
 NAMES = (
     "agreement",
     "friction_coverage",
+    "identification",
     "log_offsets",
     "made_up_logs",
     "answers",

@@ -9,6 +9,7 @@ from runner import store
 from runner.api import page
 from runner.api.boundary import public, public_class
 from runner.api.challenge import Challenge
+from runner.api.identification import Identification
 from runner.api.run import Run
 from runner.api.sweep import Sweep
 from runner.api.tuning import Tuning
@@ -20,8 +21,8 @@ if TYPE_CHECKING:
     from runner.api.comparison import Comparison
 
 Comparable = Run | Sweep | str | Path
-Thing = Run | Sweep | Tuning | Challenge | str | Path
-_KINDS: Sequence[Kind] = ("run", "sweep", "tuning", "challenge")
+Thing = Run | Sweep | Tuning | Challenge | Identification | str | Path
+_KINDS: Sequence[Kind] = ("run", "sweep", "tuning", "challenge", "identification")
 
 
 @public
@@ -86,6 +87,21 @@ def open_challenge(folder: str | Path) -> Challenge:
     from runner.sweeps.challenge import stored
 
     return public_class(Challenge, stored.open_challenge(find_folder(folder, ("challenge",))))
+
+
+@public
+def open_identification(folder: str | Path) -> Identification:
+    """Open a stored identification.
+
+    Args:
+        folder: Folder of the identification in `outputs/identifications`; "latest" for the one that was made last.
+
+    Raises:
+        RunnerError: if the folder is not an identification, or is damaged.
+    """
+    from runner.identification import result
+
+    return public_class(Identification, result.open_identification(find_folder(folder, ("identification",))))
 
 
 @public
@@ -157,14 +173,15 @@ class Report:
 def report(
     things: Thing | Sequence[Thing], formats: str | Sequence[str] = ("html", "pdf"), metrics: str | Sequence[str] = ()
 ) -> Report:
-    """Write the report on runs, sweeps, a tuning or a challenge, as `runner report` does.
+    """Write the report on runs, sweeps, a tuning, a challenge or an identification, as `runner report` does.
 
         >>> made = runner.report(runner.run(robot="macro", duration=0.1), formats="html")
         >>> made.html.name
         'report.html'
 
     Args:
-        things: Runs, sweeps, a tuning or a challenge, or their folders; several sweeps are compared with each other.
+        things: Runs, sweeps, a tuning, a challenge or an identification, or their folders; several sweeps are compared
+            with each other.
         formats: "html", "pdf" or both.
         metrics: Metrics for the comparison in a sweep; the first one ranks it. If empty, the report chooses them.
 

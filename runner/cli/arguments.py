@@ -58,6 +58,17 @@ def count(text: str) -> int:
     return int(text)
 
 
+def seconds(text: str) -> float:
+    """Return a time above 0 with its unit, such as 20ms, in s."""
+    from runner.schema.units import read_quantity
+
+    found = read_quantity(text)
+    time = None if found is None else found.in_unit("s")
+    if time is None or time <= 0.0:
+        raise argparse.ArgumentTypeError(f"not a time ({text!r}). Allowed: a time above 0, such as 20ms.")
+    return time
+
+
 def config_folder(text: str) -> Path:
     """Return a config folder, which must exist."""
     if not Path(text).is_dir():

@@ -28,7 +28,7 @@ OWN = {
     "Run experiments": ("run", "sweep", "status", "tune", "calibrate"),
     "Question a result": ("compare", "challenge", "check", "sensitivity", "verify"),
     "Look at results": ("results", "report", "table", "figures"),
-    "Real arms": ("doctor",),
+    "Real arms": ("doctor", "identify"),
     "Set up": ("list", "schema", "example"),
 }
 """Names of the commands of this package, by what a person wants to do."""

@@ -9,14 +9,14 @@ Example: runner compare latest --by controller --within robot
 import json
 import math
 import sys
-from argparse import ArgumentTypeError, Namespace
+from argparse import Namespace
 from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from runner.base.errors import RunnerError
 from runner.base.sanitize import one_line
-from runner.cli.arguments import Parser, Stored, config_folder
+from runner.cli.arguments import Parser, Stored, config_folder, seconds
 from runner.store.kinds import kind_of, open_stored
 
 if TYPE_CHECKING:
@@ -47,7 +47,7 @@ def add_arguments(parser: Parser) -> None:
     parser.add_argument("--all", action="store_true", help="print every metric and the method")
     parser.add_argument("--columns", type=Path, metavar="FILE", help="recording: YAML of the signal in each column")
     parser.add_argument(
-        "--fill-gaps", type=_seconds, metavar="TIME", help="recording: longest gap to fill, such as 20ms"
+        "--fill-gaps", type=seconds, metavar="TIME", help="recording: longest gap to fill, such as 20ms"
     )
     parser.add_argument("--robot", metavar="ROBOT", help="log: simulate its motion with this robot")
     parser.add_argument("--controller", metavar="NAME", help="log: of that run (default: computed_torque)")
@@ -192,16 +192,6 @@ def _is_recording(path: Path) -> bool:
     from runner.recordings.files import is_log_folder
 
     return is_log_folder(path)
-
-
-def _seconds(text: str) -> float:
-    from runner.schema.units import read_quantity
-
-    found = read_quantity(text)
-    seconds = None if found is None else found.in_unit("s")
-    if seconds is None or seconds <= 0.0:
-        raise ArgumentTypeError(f"not a time ({text!r}). Allowed: a time above 0, such as 20ms.")
-    return seconds
 
 
 def _compare_recording(given: Sequence[Path], recordings: Sequence[Path], options: Namespace) -> None:

@@ -1,4 +1,4 @@
-"""Write a report on runs, sweeps, a tuning or a challenge.
+"""Write a report on runs, sweeps, a tuning, a challenge or an identification.
 
 Example: runner report latest --format html
 """
@@ -15,9 +15,9 @@ def add_arguments(parser: Parser) -> None:
     parser.add_argument(
         "folders",
         nargs="+",
-        type=Stored("run", "sweep", "tuning", "challenge"),
+        type=Stored("run", "sweep", "tuning", "challenge", "identification"),
         metavar="DIR",
-        help="runs, sweeps, one tuning or one challenge; or latest",
+        help="runs, sweeps, one tuning, challenge or identification; or latest",
     )
     parser.add_formats(FORMATS, "html, pdf or both (default: html,pdf)")
     parser.add_shared(

@@ -108,6 +108,10 @@ def _read(name: str, path: Path) -> None:
         from runner.store.seal import read_json
 
         read_json(path, "its command measures it again")
+    elif name == "identifications":
+        from runner.identification.result import open_identification
+
+        open_identification(path)
     elif name in ("sweeps", "tunings"):
         from runner.sweeps.status import read_pace
         from runner.sweeps.tuning.study import open_tuning

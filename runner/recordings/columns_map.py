@@ -15,7 +15,10 @@ from runner.schema.model import StrictModel, absurd
 from runner.schema.units import WRITTEN
 
 AMPERE, PERCENT = "A", "%"
-SignalKind = Literal["position", "torque", "tip", "reference"]
+SignalKind = Literal["position", "velocity", "acceleration", "torque", "tip", "reference"]
+MOTION = ("joint", "velocity", "acceleration", "reference", "torque")
+"""Keys of a column that name a joint."""
+_OF_JOINTS: tuple[SignalKind, ...] = ("velocity", "acceleration", "reference", "torque")
 Holds = Literal["torque", "without_gravity", "commanded"]
 Side = Literal["motor", "link"]
 
@@ -24,7 +27,8 @@ class Signal(NamedTuple):
     """A signal of an arm.
 
     Attributes:
-        kind: The position, commanded position or torque of a joint, or a coordinate of the tip in the base frame.
+        kind: The position, velocity, acceleration, commanded position or torque of a joint, or a coordinate of the tip
+            in the base frame.
         of: Name of the joint; x, y or z of the tip.
     """
 
@@ -64,6 +68,8 @@ class Column(StrictModel):
 
     Attributes:
         joint: The joint whose position it holds.
+        velocity: The joint whose speed it holds.
+        acceleration: The joint whose acceleration it holds.
         reference: The joint whose commanded position it holds.
         torque: The joint whose torque it holds, or the current of whose motor.
         tip: The coordinate of the tip in the base frame.
@@ -82,6 +88,8 @@ class Column(StrictModel):
     """
 
     joint: str | None = None
+    velocity: str | None = None
+    acceleration: str | None = None
     reference: str | None = None
     torque: str | None = None
     tip: Literal["x", "y", "z"] | None = None
@@ -97,12 +105,15 @@ class Column(StrictModel):
 
     @model_validator(mode="after")
     def _check(self) -> "Column":
-        given = [name for name in ("joint", "reference", "torque", "tip") if getattr(self, name) is not None]
+        given = [name for name in (*MOTION, "tip") if getattr(self, name) is not None]
         if len(given) != 1:
             found = f"found {' and '.join(given)}" if given else "found none of them"
-            raise ValueError(f"must say one of joint, reference, torque and tip; {found}")
+            raise ValueError(f"must say one of {', '.join(MOTION)} and tip; {found}")
         if (self.unit == AMPERE) != (self.constant is not None):
-            raise ValueError("a current needs constant, in N m/A, and nothing else takes it: unit: A, constant: 1.6")
+            raise ValueError(
+                "a current needs constant, in N m/A, and nothing else takes it: unit: A, constant: 1.6; all masses and "
+                "friction scale with it"
+            )
         if (self.unit == PERCENT) != (self.scale is not None):
             raise ValueError(
                 'a per cent needs scale, its value at 100 %, and nothing else takes it: unit: "%", scale: 26'
@@ -123,16 +134,17 @@ class Column(StrictModel):
     @property
     def of(self) -> str | None:
         """The joint that it is of; None for a coordinate of the tip."""
-        return next((name for name in (self.joint, self.reference, self.torque) if name is not None), None)
+        return next((name for key in MOTION if (name := getattr(self, key)) is not None), None)
 
     @property
     def signal(self) -> Signal:
         """The signal that it holds."""
         if self.joint is not None:
             return Signal("position", self.joint)
-        if self.reference is not None:
-            return Signal("reference", self.reference)
-        return Signal("torque", self.torque) if self.torque is not None else Signal("tip", str(self.tip))
+        for kind in _OF_JOINTS:
+            if (joint := getattr(self, kind)) is not None:
+                return Signal(kind, joint)
+        return Signal("tip", str(self.tip))
 
 
 class ColumnsMap(StrictModel):
@@ -146,6 +158,7 @@ class ColumnsMap(StrictModel):
             row later; instant if it was measured at the time of its row.
         topic: Of a ROS bag: the topic of its joint states; None if it has only one.
         episode: Of a LeRobot data set: the episode; None for its longest.
+        warmth: Temperature of the arm in this log, cold or warm; None if it is not known.
     """
 
     time: TimeColumn | None = None
@@ -154,6 +167,7 @@ class ColumnsMap(StrictModel):
     torque: Literal["held", "instant"] = "held"
     topic: str | None = None
     episode: NonNegativeInt | None = None
+    warmth: Literal["cold", "warm"] | None = None
 
     @model_validator(mode="after")
     def _check(self) -> "ColumnsMap":
@@ -265,11 +279,14 @@ def _unknown_joints(found: ColumnsMap, joints: Sequence[str]) -> Iterator[str]:
             )
 
 
+_LENGTHS = {"position": "", "reference": "", "velocity": "/s", "acceleration": "/s^2"}
+
+
 def _si_unit(signal: Signal, prismatic: dict[str, bool]) -> str:
     if signal.kind == "tip":
         return "m"
-    if signal.kind in ("position", "reference"):
-        return "m" if prismatic.get(signal.of) else "rad"
+    if signal.kind in _LENGTHS:
+        return f"{'m' if prismatic.get(signal.of) else 'rad'}{_LENGTHS[signal.kind]}"
     return "N" if prismatic.get(signal.of) else "N m"
 
 

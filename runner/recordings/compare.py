@@ -152,7 +152,7 @@ def compare_recording(run: Run, path: Path, columns: Path, fill_gaps: float = 0.
     recorded = {
         signal: recording.torque_at(signal, middle) if signal.kind == "torque" else evenly(recording.t, values, at)
         for signal, values in recording.signals.items()
-        if signal.kind != "reference"
+        if signal.kind in ("position", "torque", "tip")
     }
     whole_torques = recording.holds != "without_gravity" and recording.side == "motor"
     torques = setting.trace.tau if whole_torques else setting.torques(recording.holds, recording.side)

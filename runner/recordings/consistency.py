@@ -183,6 +183,8 @@ class _Judge:
         self._model, self._data = pin.Model(model.pin_model), model.pin_model.createData()
         if recording.holds == "without_gravity":
             self._model.gravity = pin.Motion.Zero()
+        if recording.side == "link":
+            self._model.armature = np.zeros(model.nq)
         self._tip = model.tip_frame
 
     def rigid(self, motion: _Motion) -> FloatArray:

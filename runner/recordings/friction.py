@@ -12,17 +12,13 @@ reflected inertias of the rotors, which few makers publish. With these terms the
 linear model of rigid bodies (Atkeson, An and Hollerbach, International Journal of Robotics Research 5(3), 1986).
 Sensors behind the gears feel no rotors; Delta I is 0 then.
 
-Positions are differentiated after a low-pass filter that leaves the motion unchanged. Both sides of the equation then
-pass a lower low-pass filter, all without delay. They are decimated to independent samples (Gautier, Dynamic
-identification of robots with power model, IEEE ICRA 1997). Rows near standstill are left out, because sgn is not
-informative there.
+Both sides of the equation pass the same low-pass filter; see equations. Rows near standstill are left out, because sgn
+is not informative there.
 
 Each joint has a weight from its residuals. The columns of Y are projected out first. Friction that cannot be
 distinguished from other masses is not reported.
 
-The intervals allow for residuals that are correlated within half a second and between joints (Liang and Zeger,
-Biometrika 73(1), 1986). They also allow for the part of the residuals that the fit absorbs (Bell and McCaffrey, Survey
-Methodology 28(2), 2002).
+The intervals allow for residuals that are correlated within half a second and between joints; see block_intervals.
 """
 
 from collections.abc import Sequence
@@ -30,27 +26,18 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 import numpy as np
-import pinocchio as pin
 from numpy.typing import NDArray
 from scipy.special import stdtrit
 
 from runner.base.arrays import FloatArray
-from runner.recordings.smoothing import cutoff, derivative, low_pass
+from runner.recordings.block_intervals import block_scores
+from runner.recordings.equations import FEWEST, motion_of
+from runner.recordings.smoothing import cutoff
 from runner.robots.model import RobotModel
 
 if TYPE_CHECKING:
     import pandas as pd
 
-_FIRST = 5.0  # times the cut-off: that of the low-pass before the equations, which leaves the motion unchanged
-_SAMPLES = 4.0  # times that, the fewest samples in a second at which the equations are evaluated
-_STANDSTILL = 0.05  # of a joint's largest speed
-_SLOW = 0.01  # of the largest speed of all joints of its kind: a joint that is slower creeps
-_SPOILT = 3.0  # periods of the cut-off at both ends, where the low-pass knows only one side
-_CLIPPED = 0.01  # of the rows at an end of the range of torques
-_SAME = 1e-6  # of the range of torques: what differs less is one value, but for rounding
-_PILED = 10  # times the rows next to it: rounding itself puts 1.4 times as many at the peak of a sine
-_ONE_WAY = 0.98  # of sgn behind the low-pass: below it the joint has just turned round
-_FEWEST = 10  # rows of a joint in each direction
 _ROUNDING = 1e-5  # of the largest singular value of Y: what is below tells of no mass
 _TOLD_APART = 0.05  # share of a column of friction that other columns must leave
 _WEIGHINGS = 3
@@ -120,39 +107,22 @@ def identify_friction(
         rotors: Whether the torques turn the rotors, whose inertias may differ from the model's.
     """
     frequency = cutoff(period)
-    first = min(_FIRST * frequency, 0.25 / period)
-    every = max(1, int(1.0 / (_SAMPLES * first * period)))
-    smooth, measured = low_pass(q, period, first), torques
-    speed = derivative(smooth, period)
-    # The mean of sgn over a sample, as torques are means: a joint that turns round does so within one.
-    signs = np.clip(speed / np.maximum(0.5 * period * np.abs(derivative(speed, period)), 1e-12), -1.0, 1.0)
-    q, torques, signs = smooth[::every], *(low_pass(signals, period, first)[::every] for signals in (torques, signs))
-    period *= every
-    dq = derivative(q, period)
-    rows = list(zip(q, dq, derivative(dq, period), strict=True))
-    pin_model, data = pin.Model(model.pin_model), model.pin_model.createData()
-    rigid = np.array([pin.rnea(pin_model, data, *row) for row in rows])
-    Y = np.array([pin.computeJointTorqueRegressor(pin_model, data, *row).copy() for row in rows])
+    motion = motion_of(model, q, torques, period, frequency)
+    rigid, Y = motion.rigid_torques(), motion.regressor()
     if rotors:
-        ddq = np.array([row[2] for row in rows])
-        Y = np.concatenate([Y, ddq[:, :, None] * np.eye(model.nq)], axis=2)
-    edge, apart = round(_SPOILT / (frequency * period)), max(1, int(0.5 / (frequency * period)))
-    thinned = np.arange(edge, len(q) - edge, apart)
-    fastest = np.abs(dq).max(axis=0)
-    unusable = [_unusable(*pair) for pair in zip(measured.T, np.abs(speed).T, strict=True)]
+        Y = np.concatenate([Y, motion.ddq[:, :, None] * np.eye(model.nq)], axis=2)
     lacking: list[str] = []
     parts: list[_Part] = []
     for joint, name in enumerate(model.joint_names):
-        signals = (torques[:, joint] - rigid[:, joint], dq[:, joint], signs[:, joint], Y[:, joint])
-        residual, speed, sign, masses = (low_pass(signal, period, frequency)[thinned] for signal in signals)
-        moving = (np.abs(speed) > _STANDSTILL * fastest[joint]) & (np.abs(sign) > _ONE_WAY)
-        moving &= fastest[joint] > _SLOW * fastest[model.prismatic == model.prismatic[joint]].max()
-        if unusable[joint]:
-            lacking.append(f"{name}: {unusable[joint]}")
-        elif min(np.sum(moving & (speed > 0.0)), np.sum(moving & (speed < 0.0))) < _FEWEST:
+        signals = (motion.torques[:, joint] - rigid[:, joint], motion.dq[:, joint], motion.signs[:, joint], Y[:, joint])
+        residual, speed, sign, masses = map(motion.behind_filter, signals)
+        moving = motion.moving(joint, speed, sign)
+        if motion.unusable[joint]:
+            lacking.append(f"{name}: {motion.unusable[joint]}")
+        elif min(np.sum(moving & (speed > 0.0)), np.sum(moving & (speed < 0.0))) < FEWEST:
             lacking.append(f"{name}: it moves too little, or in only one direction")
         else:
-            blocks = (thinned[moving] * period / _BLOCK).astype(np.intp)
+            blocks = (motion.times[moving] / _BLOCK).astype(np.intp)
             parts.append(_Part(joint, blocks, *(signal[moving] for signal in (residual, speed, sign, masses))))
     found: list[JointFriction] = []
     for part, fitted in zip(parts, _fit(parts), strict=True):
@@ -162,22 +132,6 @@ def identify_friction(
         else:
             found.append(JointFriction(name, model.joint_units[part.joint], *fitted))
     return Friction(found, lacking, frequency)
-
-
-def _unusable(torques: FloatArray, speed: FloatArray) -> str:
-    """Return the reason why a joint's torque does not determine its friction; empty if it does."""
-    if not np.isfinite(torques).all():
-        return "no torque is recorded"
-    rows = torques[speed > _STANDSTILL * speed.max()]
-    low, high = rows.min(initial=np.inf), rows.max(initial=-np.inf)
-    if low == high:
-        return f"its torque is constant: {low:.4g} in all rows in which it moves"
-    for end in (low, high) if len(rows) else ():
-        away, same = np.abs(rows - end), _SAME * (high - low)
-        at, beside = np.sum(away <= same), np.sum(away <= away[away > same].min() + same)
-        if at > max(_CLIPPED * len(rows), _PILED * (beside - at)):
-            return f"its torque is clipped, at {end:.4g} in {at / len(rows):.0%} of the rows in which it moves"
-    return ""
 
 
 @dataclass(frozen=True)
@@ -276,17 +230,9 @@ def _solve(
 
 def _half_widths(own: FloatArray, taken: FloatArray, rest: FloatArray, blocks: NDArray[np.intp]) -> FloatArray | None:
     """Return the half-widths of the intervals, from the residual of each block; None for only one block."""
-    numbers = np.unique(blocks)
-    if len(numbers) < 2:
+    scores = block_scores(own, taken, rest, blocks)
+    if len(scores) < 2:
         return None
-    scores = np.array([own[rows].T @ _unshrunk(taken[rows], rest[rows]) for rows in map(blocks.__eq__, numbers)])
     bread = np.linalg.pinv(own.T @ own)
-    half: FloatArray = stdtrit(len(numbers) - 1, 0.975) * np.sqrt(np.diagonal(bread @ scores.T @ scores @ bread))
+    half: FloatArray = stdtrit(len(scores) - 1, 0.975) * np.sqrt(np.diagonal(bread @ scores.T @ scores @ bread))
     return half
-
-
-def _unshrunk(taken: FloatArray, rest: FloatArray) -> FloatArray:
-    """Return the residuals of a block as large as they were before the fit took up its share."""
-    values, vectors = np.linalg.eigh(np.eye(len(rest)) - taken @ taken.T)
-    found: FloatArray = vectors @ (vectors.T @ rest / np.sqrt(np.maximum(values, 1e-6)))
-    return found

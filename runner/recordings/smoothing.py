@@ -1,5 +1,7 @@
 """Smoothing of signals without delay, and their derivatives."""
 
+from functools import lru_cache
+
 import numpy as np
 from scipy.interpolate import CubicSpline
 from scipy.signal import butter, sosfiltfilt
@@ -26,10 +28,17 @@ def low_pass(signals: FloatArray, period: float, frequency: float) -> FloatArray
         period: Time between two samples, in s.
         frequency: Cut-off, in Hz.
     """
-    sections = butter(_ORDER, frequency, fs=1.0 / period, output="sos")
+    sections = _sections(frequency, period)
     padding = min(len(signals) - 2, round(3.0 / (frequency * period)))
     smooth: FloatArray = sosfiltfilt(sections, signals, axis=0, padlen=padding)
     return smooth
+
+
+@lru_cache(maxsize=64)
+def _sections(frequency: float, period: float) -> FloatArray:
+    """Return the low-pass as second-order sections."""
+    sections: FloatArray = butter(_ORDER, frequency, fs=1.0 / period, output="sos")
+    return sections
 
 
 def derivative(signals: FloatArray, period: float) -> FloatArray:

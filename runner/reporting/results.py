@@ -11,6 +11,8 @@ from runner.base.atomic import write_atomically
 from runner.base.errors import RunnerError, StoreError
 from runner.base.quantities import with_powers
 from runner.base.sanitize import one_line
+from runner.identification.result import open_identification
+from runner.identification.words import answer_lines
 from runner.reporting.challenge.words import challenge_answer
 from runner.reporting.figures import still_motion
 from runner.reporting.metric_titles import key_metrics
@@ -123,6 +125,9 @@ def _row(entry: Entry, sizes: Mapping[str, int]) -> Row:
     if not entry.finished:
         return Row(entry, "", state="unfinished")
     try:
+        if entry.kind == "identification":
+            known = open_identification(entry.folder)
+            return Row(entry, known.command, next(answer_lines(known)), str(len(known.logs)))
         found = open_stored(entry.folder)
         if isinstance(found, Sweep):
             with_runs = entry.size + sum(sizes.get(name, 0) for name in set(found.hashes))

@@ -1,4 +1,4 @@
-"""Reports on stored runs, on sweeps and their comparison, on a tuning and on a challenge."""
+"""Reports on stored runs, on sweeps and their comparison, on a tuning, a challenge and an identification."""
 
 import hashlib
 import os
@@ -24,7 +24,7 @@ def write(
     output: Path | None = None,
     by: Sequence[str] = (),
 ) -> Path:
-    """Write the report on some runs, sweeps, one tuning or one challenge; return its folder.
+    """Write the report on some runs, sweeps, one tuning, one challenge or one identification; return its folder.
 
     Args:
         folders: Their folders; several sweeps are compared.
@@ -59,10 +59,10 @@ def _ask(folders: Sequence[Path], by: Sequence[str]) -> None:
 def compose_report(
     folders: Sequence[Path], metrics: Sequence[str] = (), output: Path | None = None
 ) -> tuple[Document, Path]:
-    """Return the report on runs, sweeps, one tuning or one challenge, and the folder that it is written to.
+    """Return the report on runs, sweeps, one tuning, one challenge or one identification, and the folder for it.
 
     Args:
-        folders: Those of the runs or sweeps, or that of the tuning or challenge.
+        folders: Those of the runs or sweeps, or that of the tuning, challenge or identification.
         metrics: What sweeps are compared by.
         output: Folder that it is written to; None for one in `reports/` of the outputs folder.
 
@@ -72,7 +72,9 @@ def compose_report(
     """
     tunings = [folder for folder in folders if kind_of(folder) == "tuning"]
     challenges = [folder for folder in folders if kind_of(folder) == "challenge"]
-    things = [store.open_stored(folder) for folder in folders if folder not in (*tunings, *challenges)]
+    identified = [folder for folder in folders if kind_of(folder) == "identification"]
+    others = (*tunings, *challenges, *identified)
+    things = [store.open_stored(folder) for folder in folders if folder not in others]
     sweeps = [thing for thing in things if isinstance(thing, store.Sweep)]
     runs = [thing for thing in things if isinstance(thing, store.Run)]
     place = output or report_place(outputs_of(folders[0]), report_name(folders, metrics))
@@ -90,6 +92,11 @@ def compose_report(
         from runner.sweeps.challenge.stored import open_challenge
 
         document = challenge_document(open_challenge(challenges[0]), store.open_sweep(challenges[0]))
+    elif identified:
+        from runner.identification.result import open_identification
+        from runner.reporting.identification_report import identification_document
+
+        document = identification_document(open_identification(identified[0]))
     elif runs:
         from runner.reporting.comparison.runs import runs_document
         from runner.reporting.run_report import run_document

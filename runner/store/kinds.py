@@ -17,7 +17,7 @@ if TYPE_CHECKING:
     from runner.store.run import Run
     from runner.store.sweep import Sweep
 
-Kind = Literal["run", "sweep", "tuning", "challenge", "calibration", "report"]
+Kind = Literal["run", "sweep", "tuning", "challenge", "calibration", "identification", "report"]
 WORD = "latest"
 
 _NOTES = "newest"  # folder in an outputs folder: a file for each kind, so that two processes cannot damage one file
@@ -46,6 +46,7 @@ KINDS: Mapping[Kind, StoredKind] = {
     "challenge": StoredKind("challenges", ("challenge.json",), "runner challenge RESULT", ("sweep.json",)),
     "sweep": StoredKind("sweeps", ("sweep.json",), "runner -m OVERRIDES"),
     "calibration": StoredKind("calibrations", ("result.json",), "runner calibrate"),
+    "identification": StoredKind("identifications", ("identification.json",), "runner identify LOG"),
     "run": StoredKind("runs", ("metrics.json", "config.yaml", "trace.parquet"), "runner OVERRIDES"),
     "report": StoredKind("reports", ("report.html", "report.pdf"), "runner report"),
 }

@@ -52,10 +52,13 @@ def test_signals_and_factors(tmp_path):
         ("{a: {joint: q1, unit: degree}}", "columns.a.unit: must be one of rad, mrad, deg; found 'degree' (did you"),
         ("{a: {joint: slide, unit: rad}}", "columns.a.unit: must be one of m, cm, mm, um; found 'rad'"),
         ("{a: {joint: q1}}", "columns.a.unit: Field required"),
-        ("{a: {unit: rad}}", "must say one of joint, reference, torque and tip; found none of them"),
+        (
+            "{a: {unit: rad}}",
+            "must say one of joint, velocity, acceleration, reference, torque and tip; found none of them",
+        ),
         (
             "{a: {joint: q1, tip: x, unit: rad}}",
-            "must say one of joint, reference, torque and tip; found joint and tip",
+            "must say one of joint, velocity, acceleration, reference, torque and tip; found joint and tip",
         ),
         ("{a: {torque: q1, unit: A}}", "a current needs constant, in N m/A"),
         ("{a: {torque: q1, unit: N m, constant: 2.0}}", "a current needs constant, in N m/A, and nothing else"),

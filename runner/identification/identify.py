@@ -1,0 +1,209 @@
+"""Identification of an arm by examined logs: choice of friction and cut-off, fit and its checks."""
+
+from collections.abc import Mapping, Sequence
+from datetime import UTC, datetime
+from pathlib import Path
+
+import numpy as np
+
+from runner.base import progress
+from runner.base.arrays import FloatArray
+from runner.base.errors import RunnerError
+from runner.identification.checks import SecondMethod, find_flags, second_method
+from runner.identification.examination import (
+    Examination,
+    Question,
+    columns_in_sum,
+    find_untold,
+    find_weak,
+    rows_of,
+    usual_cutoff,
+)
+from runner.identification.fit import Fit, fit_logs, name_of
+from runner.identification.friction_kinds import KINDS, SHAPED, TERMS, FrictionKind, term_unit
+from runner.identification.held_out import HeldOut, file_share, joint_weights, predict_held_out
+from runner.identification.log_rows import LogRows
+from runner.identification.parameters import Sum
+from runner.identification.result import (
+    Alternative,
+    Identification,
+    JointAccuracy,
+    LogFacts,
+    Parameter,
+    place_of,
+)
+from runner.recordings import digest_of
+from runner.robots.model import RobotModel
+
+_SHOWN = 300  # rows of a joint in the result
+_BETTER = 0.01  # of the held-out error, by which a further term must lower it
+_DEVIATIONS = 2.0  # of the gain over the stretches, by which a further term must lower it
+_FACTORS = (0.5, 2.0)  # times the usual cut-off, which are tried
+_FASTEST = 0.2  # of the rate of rows: the highest cut-off
+
+
+def identify(
+    examined: Examination,
+    outputs: Path,
+    command: str,
+    kind: FrictionKind | None = None,
+    frequency: float | None = None,
+) -> Identification:
+    """Return the identification of an arm; it is not stored yet.
+
+    Args:
+        examined: The logs.
+        outputs: Outputs folder.
+        command: Command that makes it.
+        kind: Kind of friction; None for the one that predicts unseen torques best.
+        frequency: Cut-off on both sides of the equations, in Hz; None for the one that predicts unseen torques best.
+
+    Raises:
+        RunnerError: if the cut-off does not fit the rate of the rows.
+    """
+    question, sums, usual = examined.question, examined.sums, usual_cutoff(examined.question)
+    fastest = min(_FASTEST / recording.period for recording in question.recordings)
+    if frequency is not None and not 0.5 <= frequency <= fastest:
+        raise RunnerError(f"--cutoff: {frequency:g} Hz does not fit. Allowed: 0.5 to {fastest:.3g} Hz for these rows.")
+    judged = examined.rows
+    weights = joint_weights(examined.fit)
+    progress.begin("choosing friction and cut-off")
+    tried: list[tuple[Fit, HeldOut, Sequence[LogRows], float]] = []
+
+    def attempt(own: FrictionKind, rows: Sequence[LogRows], at: float) -> int:
+        fit = examined.fit if own == "coulomb" and rows is judged else fit_logs(rows, own)
+        tried.append((fit, predict_held_out(fit, judged, weights), rows, at))
+        return len(tried) - 1
+
+    first = judged if frequency is None else rows_of(question, sums, frequency)
+    for own in (kind,) if kind else KINDS:
+        attempt(own, first, usual if frequency is None else frequency)
+    best = _chosen([held for _, held, _, _ in tried])
+    if frequency is None:
+        places = [best]
+        for factor in _FACTORS:
+            if (at := factor * usual) <= fastest:
+                places.append(attempt(tried[best][0].state.layout.kind, rows_of(question, sums, at), at))
+        best = places[_chosen([tried[place][1] for place in places])]
+    fit, held, rows, at = tried[best]
+    second = second_method(fit)
+    follows = _follows(fit, rows, question.model)
+    alternatives = [
+        Alternative(
+            each.state.layout.kind, each_at, error.share(), float(error.squares.mean()),
+            follows if number == best else _follows(each, each_rows, question.model), number == best,
+        )
+        for number, (each, error, each_rows, each_at) in enumerate(tried)
+    ]  # fmt: skip
+    layout = fit.state.layout
+    digests = [digest_of(recording.path) for recording in question.recordings]
+    said = (digests, [one.model_dump() for one in question.said], question.urdf, kind, frequency)
+    base = _file_values(question, sums)
+    wide = set(find_weak(fit))
+    return Identification(
+        folder=place_of(outputs, said),
+        command=command,
+        robot=question.robot,
+        urdf=question.urdf,
+        side=question.recordings[0].side,
+        currents=question.currents,
+        kind=layout.kind,
+        forced=kind is not None,
+        frequency=at,
+        parameters=[
+            _parameter(question, sums, fit, column, second, base)
+            for column in fit.taken
+            if column != layout.delay and column not in wide
+        ],
+        untold=list(find_untold(question, sums, fit)),
+        joints=[_accuracy(question, rows, fit, held, base, joint) for joint in np.unique(held.system.joint).tolist()],
+        held_out=held.share(),
+        file=file_share(held.system, base),
+        alternatives=alternatives,
+        logs=[
+            LogFacts(recording.path.name, digest, len(recording.t), recording.duration, recording.period,
+                     one.warmth, list(notes))
+            for recording, digest, one, notes in
+            zip(question.recordings, digests, question.said, examined.notes, strict=True)
+        ],
+        follows=follows,
+        payloads=examined.payloads,
+        delay=fit.state.delay,
+        delay_half=float(fit.halves[layout.delay]),
+        block=fit.block,
+        rank=len(fit.taken) - (layout.delay in fit.taken),
+        condition=fit.condition,
+        shapes=(fit.state.shapes * rows[0].motion.fastest).tolist() if layout.kind in SHAPED else [],
+        date=datetime.now(UTC).date().isoformat(),
+    )  # fmt: skip
+
+
+def _chosen(held: Sequence[HeldOut]) -> int:
+    """Return the first error than which none is clearly lower: by two deviations over the stretches, and by 1 %."""
+    best = min(held, key=lambda each: float(each.squares.mean()))
+    return next(place for place, each in enumerate(held) if not _is_clear(each.squares - best.squares, each.squares))
+
+
+def _is_clear(gain: FloatArray, of: FloatArray) -> bool:
+    deviation = float(gain.std(ddof=1) / np.sqrt(len(gain))) if len(gain) > 1 else np.inf
+    return bool(gain.mean() > max(_DEVIATIONS * deviation, _BETTER * float(of.mean())))
+
+
+def _follows(fit: Fit, rows: Sequence[LogRows], model: RobotModel) -> list[str]:
+    return [
+        f"{flag.follows} at {model.joint_names[flag.joint]} (t {flag.t:.1f}, chance up to {flag.limit:.1f})"
+        for flag in find_flags(fit, rows)
+    ]
+
+
+def _file_values(question: Question, sums: Sequence[Sum]) -> FloatArray:
+    model = question.model
+    armature = model.armature if question.rotors else np.zeros(model.nq)
+    full = np.concatenate([model.inertial_parameters, armature])
+    return np.array([float(each.factors @ full) for each in sums])
+
+
+def _parameter(
+    question: Question, sums: Sequence[Sum], fit: Fit, column: int, second: SecondMethod, base: FloatArray,
+) -> Parameter:  # fmt: skip
+    layout, joints = fit.state.layout, question.model.joint_names
+    names = [each.name for each in sums]
+    inertial = column < layout.base
+    joint, term = divmod(column - layout.base, len(TERMS[layout.kind]))
+    unit = sums[column].unit if inertial else term_unit(TERMS[layout.kind][term], bool(question.model.prismatic[joint]))
+    place = fit.taken.index(column)
+    others = [other for other in range(layout.delay) if other not in fit.taken and place in columns_in_sum(fit, other)]
+    return Parameter(
+        name_of(layout, column, names, joints), unit, float(fit.state.values[column]), float(second.halves[column]),
+        float(fit.white[column]), float(base[column]) if inertial else None, float(second.values[column]),
+        bool(second.differs[column]), bool(fit.spread[column]),
+        [name_of(layout, each, names, joints) for each in others],
+    )  # fmt: skip
+
+
+def _accuracy(
+    question: Question, rows: Sequence[LogRows], fit: Fit, held: HeldOut, base: FloatArray, joint: int
+) -> JointAccuracy:
+    system = fit.system
+    own = np.flatnonzero(system.joint == joint)
+    used = own[fit.weights[own] > 0.0]
+    shown = used[np.unique(np.linspace(0, len(used) - 1, min(_SHOWN, len(used))).astype(int))] if len(used) else used
+    signals: Mapping[str, list[FloatArray]] = {"position": [], "speed": []}
+    ends = np.cumsum([0, *(recording.duration for recording in question.recordings)])
+    for each in rows:
+        signals["position"].append(each.motion.q[each.motion.kept, joint])
+        signals["speed"].append(each.speed[:, joint])
+
+    def values(parts: Sequence[FloatArray]) -> list[float]:
+        return [float(f"{parts[log][row]:.6g}") for log, row in zip(system.log[shown], system.row[shown], strict=True)]
+
+    layout = fit.state.layout
+    load = system.X[shown, : layout.base] @ fit.state.values[: layout.base]
+    return JointAccuracy(
+        question.model.joint_names[joint], question.model.joint_units[joint], held.share(joint),
+        file_share(held.system, base, joint), len(used), 1.0 - float(np.mean(system.moving[own])),
+        float(np.mean(fit.outside[used])) if len(used) else 0.0,
+        [float(f"{ends[log] + at:.6g}") for log, at in zip(system.log[shown], system.time[shown], strict=True)],
+        values(signals["position"]), values(signals["speed"]),
+        [float(f"{each:.6g}") for each in load], [float(f"{each:.6g}") for each in fit.rest[shown]],
+    )  # fmt: skip

@@ -1,0 +1,163 @@
+r"""Equations of motion of an arm at the rows of a log, behind the same low-pass on both sides.
+
+Positions are differentiated after a low-pass filter that leaves the motion unchanged. Both sides of the equations then
+pass a lower low-pass filter, all without delay. They are decimated to independent samples (Gautier, Dynamic
+identification of robots with power model, IEEE ICRA 1997).
+"""
+
+from dataclasses import dataclass
+from functools import cached_property
+
+import numpy as np
+import pinocchio as pin
+from numpy.typing import NDArray
+
+from runner.base.arrays import FloatArray
+from runner.recordings.smoothing import derivative, low_pass
+from runner.robots.model import RobotModel
+
+STANDSTILL = 0.05
+"""Share of a joint's largest speed: rows below it are near standstill."""
+
+_FIRST = 5.0  # times the cut-off: that of the low-pass before the equations, which leaves the motion unchanged
+_SAMPLES = 4.0  # times that, the fewest samples in a second at which the equations are evaluated
+_SLOW = 0.01  # of the largest speed of all joints of its kind: a joint that is slower creeps
+_SPOILT = 3.0  # periods of the cut-off at both ends, where the low-pass knows only one side
+_CLIPPED = 0.01  # of the rows at an end of the range of torques
+_SAME = 1e-6  # of the range of torques: what differs less is one value, but for rounding
+_PILED = 10  # times the rows next to it: rounding itself puts 1.4 times as many at the peak of a sine
+_ONE_WAY = 0.98  # of sgn behind the low-pass: below it the joint has just turned round
+FEWEST = 10
+"""Fewest rows of a joint in each direction."""
+
+
+@dataclass(frozen=True)
+class Motion:
+    """Even rows at which the equations of an arm are evaluated.
+
+    Attributes:
+        model: The arm.
+        period: Time between two rows, in s.
+        frequency: Cut-off of the low-pass on both sides of the equations, in Hz.
+        q: Positions, shape (N, nq), in rad.
+        dq: Speeds, shape (N, nq), in rad/s.
+        ddq: Accelerations, shape (N, nq), in rad/s^2.
+        signs: Direction of motion, shape (N, nq): 1, -1, or between them where a joint turns round.
+        torques: Shape (N, nq), in N m; NaN throughout for a joint without.
+        acceleration_noise: Noise of the filtered accelerations that follows from that of the positions, shape (nq,), in
+            rad/s^2; 0 if they are recorded.
+        unusable: The reason why a joint's torque cannot be used, by joint; empty if it can.
+    """
+
+    model: RobotModel
+    period: float
+    frequency: float
+    q: FloatArray
+    dq: FloatArray
+    ddq: FloatArray
+    signs: FloatArray
+    torques: FloatArray
+    acceleration_noise: FloatArray
+    unusable: tuple[str, ...]
+
+    @cached_property
+    def kept(self) -> NDArray[np.intp]:
+        """Rows that are independent samples behind the low-pass, without the ends."""
+        step = self.frequency * self.period
+        edge = round(_SPOILT / step)
+        return np.arange(edge, len(self.q) - edge, max(1, int(0.5 / step)))
+
+    @cached_property
+    def times(self) -> FloatArray:
+        """Times of the kept rows, shape (M,), in s."""
+        return np.asarray(self.kept * self.period, dtype=np.float64)
+
+    def behind_filter(self, signals: FloatArray) -> FloatArray:
+        """Return signals behind the low-pass at the kept rows, shapes (N, ...) to (M, ...)."""
+        return low_pass(signals, self.period, self.frequency)[self.kept]
+
+    @cached_property
+    def fastest(self) -> FloatArray:
+        """Largest speed of each joint, shape (nq,), in rad/s."""
+        fastest: FloatArray = np.abs(self.dq).max(axis=0)
+        return fastest
+
+    def creeps(self, joint: int) -> bool:
+        """Return True if a joint hardly moves compared with the fastest joint of its kind."""
+        alike = self.model.prismatic == self.model.prismatic[joint]
+        return bool(self.fastest[joint] <= _SLOW * self.fastest[alike].max())
+
+    def moving(self, joint: int, speed: FloatArray, sign: FloatArray) -> NDArray[np.bool_]:
+        """Return the kept rows in which a joint moves in one direction, shape (M,), from its filtered speed and sgn."""
+        moving: NDArray[np.bool_] = (np.abs(speed) > STANDSTILL * self.fastest[joint]) & (np.abs(sign) > _ONE_WAY)
+        return moving & (not self.creeps(joint))
+
+    def rigid_torques(self) -> FloatArray:
+        """Return the torques of the model, M ddq + V + G, shape (N, nq), in N m."""
+        pin_model, data = self.model.separate()
+        return np.array([pin.rnea(pin_model, data, *row) for row in zip(self.q, self.dq, self.ddq, strict=True)])
+
+    def regressor(self) -> FloatArray:
+        """Return the linear model of the links' masses and inertias, shape (N, nq, 10 nq)."""
+        pin_model, data = self.model.separate()
+        Y = np.empty((len(self.q), self.model.nq, 10 * self.model.nq))
+        for place, row in zip(Y, zip(self.q, self.dq, self.ddq, strict=True), strict=True):
+            place[:] = np.reshape(pin.computeJointTorqueRegressor(pin_model, data, *row), place.shape)
+        return Y
+
+
+def motion_of(
+    model: RobotModel,
+    q: FloatArray,
+    torques: FloatArray,
+    period: float,
+    frequency: float,
+    speeds: FloatArray | None = None,
+    accelerations: FloatArray | None = None,
+) -> Motion:
+    """Return the rows of a log at which the equations are evaluated.
+
+    Args:
+        model: The arm.
+        q: Recorded positions, even samples, shape (N, nq), in rad.
+        torques: Recorded torques, shape (N, nq), in N m; NaN throughout for a joint without.
+        period: Time between two samples, in s.
+        frequency: Cut-off of the low-pass on both sides, in Hz.
+        speeds: Recorded speeds, shape (N, nq), in rad/s; None for the derivative of the positions.
+        accelerations: Recorded accelerations, shape (N, nq), in rad/s^2; None for the derivative of the speeds.
+    """
+    first = min(_FIRST * frequency, 0.25 / period)
+    every = max(1, int(1.0 / (_SAMPLES * first * period)))
+    smooth, measured = low_pass(q, period, first), torques
+    speed = derivative(smooth, period) if speeds is None else low_pass(speeds, period, first)
+    if speeds is None:
+        # The mean of sgn over a sample, as torques are means: a joint that turns round does so within one.
+        signs = np.clip(speed / np.maximum(0.5 * period * np.abs(derivative(speed, period)), 1e-12), -1.0, 1.0)
+    else:
+        signs = np.sign(speeds)
+    # White noise above the low-pass has, behind two derivatives, a variance of 2 T sigma^2 (2 pi)^4 f^5 / 5 up to f.
+    above = 1.4826 * np.median(np.abs(q - smooth), axis=0) / np.sqrt(1.0 - 2.0 * first * period)
+    noise = above * (2.0 * np.pi) ** 2 * np.sqrt(0.4 * period * frequency**5)
+    unusable = tuple(_unusable(*pair) for pair in zip(measured.T, np.abs(speed).T, strict=True))
+    q, torques, signs = smooth[::every], *(low_pass(signals, period, first)[::every] for signals in (torques, signs))
+    period *= every
+    dq = derivative(q, period) if speeds is None else speed[::every]
+    ddq = derivative(dq, period) if accelerations is None else low_pass(accelerations, period / every, first)[::every]
+    noise = noise if accelerations is None else np.zeros(model.nq)
+    return Motion(model, period, frequency, q, dq, ddq, signs, torques, noise, unusable)
+
+
+def _unusable(torques: FloatArray, speed: FloatArray) -> str:
+    """Return the reason why a joint's torque does not determine its friction; empty if it does."""
+    if not np.isfinite(torques).all():
+        return "no torque is recorded"
+    rows = torques[speed > STANDSTILL * speed.max()]
+    low, high = rows.min(initial=np.inf), rows.max(initial=-np.inf)
+    if low == high:
+        return f"its torque is constant: {low:.4g} in all rows in which it moves"
+    for end in (low, high) if len(rows) else ():
+        away, same = np.abs(rows - end), _SAME * (high - low)
+        at, beside = np.sum(away <= same), np.sum(away <= away[away > same].min() + same)
+        if at > max(_CLIPPED * len(rows), _PILED * (beside - at)):
+            return f"its torque is clipped, at {end:.4g} in {at / len(rows):.0%} of the rows in which it moves"
+    return ""

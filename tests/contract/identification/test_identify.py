@@ -1,0 +1,190 @@
+"""`runner identify`: dry run, result, report and Python, and logs that do not fit."""
+
+import json
+import re
+import shutil
+
+import numpy as np
+import pytest
+import yaml
+from support.identified_logs import KnownArm, write_log
+
+import runner
+from runner.identification.result import open_identification
+from runner.reporting.mathml import faulty
+from runner.reporting.stored import compose_report
+
+
+@pytest.fixture(scope="module")
+def arm():
+    return KnownArm("macro")
+
+
+@pytest.fixture(scope="module")
+def log(arm):
+    t, q, dq, ddq, tau = arm.log(16.0)
+    return t, q, dq, ddq, tau + 0.05 * np.random.default_rng(0).normal(size=tau.shape)
+
+
+@pytest.fixture(scope="module")
+def made(arm, log, tmp_path_factory):
+    """A log, its column map, and the identification by it, made once."""
+    folder = tmp_path_factory.mktemp("identify")
+    path, columns = write_log(folder, arm.model, log, warmth="cold")
+    found = runner.identify(path, columns=columns, robot="macro", friction="coulomb", outputs=folder / "outputs")
+    return path, columns, found
+
+
+def test_a_dry_run_says_what_the_log_can_determine_and_stores_nothing(made, cli, tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    path, columns, _ = made
+    ending = cli("identify", path, "--columns", columns, "--robot", "macro", "--dry-run")
+    assert ending.code == 0
+    assert re.search(
+        r"^25 of 25 parameters can be told apart: 16 sums of masses, inertias and rotor inertias", ending.out
+    )
+    assert "near standstill" in ending.out
+    assert "motor side, instant" in ending.out
+    assert not list(tmp_path.iterdir())
+
+
+@pytest.mark.costs(6)
+def test_the_command_answers_first_and_ends_with_the_folder(made, cli, tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    path, columns, _ = made
+    ending = cli("identify", path, "--columns", columns, "--robot", "macro", "--cutoff", "10")
+    assert ending.code == 0, ending.err
+    lines = ending.out.splitlines()
+    assert any(line.startswith("Torques that the fit has not seen are predicted to") for line in lines)
+    folder = tmp_path / lines[-1]
+    found = open_identification(folder)
+    assert (len(found.parameters), found.frequency, found.logs[0].warmth) == (25, 10.0, "cold")
+    assert [one.kind for one in found.alternatives] == ["coulomb", "sigmoid", "load", "stribeck"]
+    assert sum(one.chosen for one in found.alternatives) == 1
+    listed = cli("results")
+    assert "identification" in listed.out
+    assert cli("verify").code == 0
+    assert cli("report", "latest", "--format", "html").code == 0
+
+
+def test_values_lie_in_their_intervals_and_the_answer_names_the_open_questions(made, arm):
+    found = made[2]
+    frame = found.to_frame()
+    truth = dict(zip([each.name for each in arm.sums], arm.base, strict=True))
+    inside = [abs(frame.value[name] - value) <= frame.half[name] for name, value in truth.items()]
+    assert np.mean(inside) > 0.8
+    assert (frame.white <= 1.5 * frame.half).all()
+    text = " ".join(found.sentences)
+    assert "One log knows nothing of what differs between logs: temperature first" in text
+    assert "friction of a warm one is not known" in text
+    assert found.held_out < 0.05 < found.file
+    assert runner.open_identification(found.folder) == found
+    assert str(found.folder) in repr(found)
+    assert "<p>" in found._repr_html_()
+
+
+def test_the_report_has_no_fault_and_names_the_second_method(made):
+    document, _ = compose_report([made[2].folder])
+    assert faulty(document) == []
+    titles = [section.title for section in document.sections]
+    assert titles[:3] == ["Unseen torque", "Parameters", "What speaks against it"]
+    assert "Second method" in titles
+
+
+def test_a_damaged_result_is_told(made, tmp_path):
+    folder = tmp_path / "outputs" / "identifications" / made[2].folder.name
+    shutil.copytree(made[2].folder, folder)
+    path = folder / "identification.json"
+    content = json.loads(path.read_text())
+    path.write_text(path.read_text().replace('"macro"', '"mini"', 1))
+    with pytest.raises(runner.RunnerError, match="damaged"):
+        runner.open_identification(folder)
+    assert content["robot"] == "macro"
+
+
+def test_sensors_behind_the_gears_leave_rotors_out(arm, tmp_path, cli):
+    stiff = KnownArm("macro", rotors=False)
+    path, columns = write_log(tmp_path, arm.model, stiff.log(), side="link")
+    ending = cli("identify", path, "--columns", columns, "--robot", "macro", "--dry-run")
+    assert ending.out.startswith("24 of 24 parameters")
+    assert "rotor inertias and the friction of the gears are not in these torques" in ending.out
+
+
+def test_a_joint_that_does_not_move_is_named_with_a_motion(arm, tmp_path, cli):
+    path, columns = write_log(tmp_path, arm.model, arm.log(moves=[1.0, 1.0, 0.0]))
+    ending = cli("identify", path, "--columns", columns, "--robot", "macro", "--dry-run")
+    assert ending.code == 0
+    assert "q3 does not move" in ending.out
+    assert re.search(r"not determined: viscous of q3 .* move q3 in both directions", ending.out)
+
+
+def test_a_clipped_torque_is_left_out_with_its_reason(arm, log, tmp_path, cli):
+    tau = log[-1].copy()
+    tau[:, 1] = np.clip(tau[:, 1], *(0.5 * np.array([tau[:, 1].min(), tau[:, 1].max()])))
+    path, columns = write_log(tmp_path, arm.model, (*log[:-1], tau))
+    ending = cli("identify", path, "--columns", columns, "--robot", "macro", "--dry-run")
+    assert "the torque of q2 is left out: its torque is clipped" in ending.out
+
+
+def test_a_current_says_what_scales_with_its_constant(arm, log, tmp_path, cli):
+    path, columns = write_log(tmp_path, arm.model, log)
+    said = yaml.safe_load(columns.read_text())
+    said["columns"]["torque_q1"] |= {"unit": "A", "constant": 1.0}
+    columns.write_text(yaml.safe_dump(said))
+    ending = cli("identify", path, "--columns", columns, "--robot", "macro", "--dry-run")
+    assert "torques of q1: currents times a constant, with which all parameters scale" in ending.out
+    del said["columns"]["torque_q1"]["constant"]
+    columns.write_text(yaml.safe_dump(said))
+    ending = cli("identify", path, "--columns", columns, "--robot", "macro")
+    assert ending.code == 2
+    assert "all masses and friction scale with it" in ending.err
+
+
+@pytest.mark.parametrize(
+    ("change", "words"),
+    [
+        ({"holds": "without_gravity"}, "leaves no masses to identify"),
+        ({"joint": "q9"}, "both hold the position of q9"),
+    ],
+)
+def test_a_map_that_does_not_fit_is_one_sentence(arm, log, tmp_path, cli, change, words):
+    path, columns = write_log(tmp_path, arm.model, log)
+    said = yaml.safe_load(columns.read_text())
+    for name, column in said["columns"].items():
+        if name.startswith("torque") == ("holds" in change):
+            column.update(change)
+    columns.write_text(yaml.safe_dump(said))
+    ending = cli("identify", path, "--columns", columns, "--robot", "macro")
+    assert ending.code == 2
+    assert words in ending.err
+    assert len(ending.err.strip().splitlines()) == 1
+
+
+def test_logs_that_do_not_fit_are_one_sentence(arm, log, tmp_path, cli):
+    path, columns = write_log(tmp_path, arm.model, log)
+    words = ["--columns", columns, "--robot", "macro"]
+    short = write_log(tmp_path, arm.model, [part[:400] for part in log], "short.csv")[0]
+    for given, message in (
+        ((path, path, *words), "one is given twice"),
+        ((path, short, short, *words, "--columns", columns), "one for all, or one for each"),
+        ((short, *words), "Needed: 2 s or more"),
+        ((tmp_path / "none.csv", *words), "none.csv"),
+        ((path, *words, "--cutoff", "200"), "--cutoff: 200 Hz does not fit"),
+    ):
+        ending = cli("identify", *given)
+        assert ending.code == 2, given
+        assert message in ending.err
+    with pytest.raises(runner.RunnerError, match="Did you mean 'load'"):
+        runner.identify(path, columns=columns, robot="macro", friction="lood")
+    with pytest.raises(runner.RunnerError, match="none is given"):
+        runner.identify(columns=columns, robot="macro")
+
+
+def test_joints_in_another_order_are_asked_for(arm, log, tmp_path, cli):
+    path, columns = write_log(tmp_path, arm.model, log)
+    said = yaml.safe_load(columns.read_text())
+    said["columns"]["joint_q2"]["joint"], said["columns"]["joint_q3"]["joint"] = "q3", "q2"
+    columns.write_text(yaml.safe_dump(said))
+    ending = cli("identify", path, "--columns", columns, "--robot", "macro")
+    assert ending.code == 2
+    assert "exchanged" in ending.err
