@@ -58,6 +58,8 @@ def _copy(function: FunctionType) -> str:
     try:
         source = dedent(inspect.getsource(function))
         code = compile(source, name, "exec", flags=_NO_ANNOTATIONS)
+        if name not in {each.co_name for each in code.co_consts if isinstance(each, CodeType)}:
+            raise OSError  # the line of another text with the same file name, such as that of `python -c` since 3.13
     except (OSError, TypeError, SyntaxError):
         raise ConfigError(f"{_KEY}: the source of {where} cannot be read. Write the function in a file") from None
     known = {**function.__globals__, **inspect.getclosurevars(function).nonlocals}

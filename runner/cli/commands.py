@@ -10,7 +10,7 @@ The module of a command has a docstring, `add_arguments(parser)` and `run(argume
   other than a stored result; None for an unknown path.
 """
 
-from collections.abc import Callable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from functools import cache
 from importlib.util import find_spec
 from pathlib import Path
@@ -94,18 +94,22 @@ def summary(name: str) -> str:
     return " ".join(parts[1].partition("\n\n")[0].split()) if len(parts) > 1 else ""
 
 
-def added_topics() -> dict[str, Topic]:
-    """Return the topics that guests and installed packages add to `runner list`."""
-    return {topic: function for module in _others() for topic, function in vars(module).get("TOPICS", {}).items()}
+def guests_topics() -> dict[str, Topic]:
+    """Return the topics that guests add to `runner list`; reads no metadata of packages."""
+    return _topics(name for modules in guests().values() for name in modules)
+
+
+def installed_topics() -> dict[str, Topic]:
+    """Return the topics that installed packages add to `runner list`."""
+    return _topics(installed())
+
+
+def _topics(commands: Iterable[str]) -> dict[str, Topic]:
+    return {topic: function for name in commands for topic, function in vars(load(name)).get("TOPICS", {}).items()}
 
 
 def find_document(path: Path) -> Compose | None:
     """Return the function that composes the document of a path that a guest or an installed package knows, or None."""
-    finders = (vars(module).get("find_document") for module in _others())
+    others = (*(name for modules in guests().values() for name in modules), *installed())
+    finders = (vars(load(name)).get("find_document") for name in others)
     return next((found for finder in finders if finder is not None and (found := finder(path)) is not None), None)
-
-
-def _others() -> Iterator[ModuleType]:
-    """Yield the modules of the commands of guests and installed packages."""
-    for name in (*(name for modules in guests().values() for name in modules), *installed()):
-        yield load(name)

@@ -9,7 +9,6 @@ from typing import TYPE_CHECKING
 
 from runner.base.errors import ConfigError, RunnerError
 from runner.base.sanitize import one_line
-from runner.statistics.conclusion import SHARE
 
 if TYPE_CHECKING:
     from runner.config.compose.composer import Composer
@@ -22,6 +21,8 @@ _SET = (_REPETITIONS, "sweep.part")  # keys that the count sets, or that leave c
 
 def difference_share(text: str) -> float:
     """Return the share of a text such as "10%"."""
+    from runner.statistics.conclusion import SHARE  # NumPy, without which words are completed
+
     found = re.fullmatch(r"(\d+(?:\.\d+)?)\s*%", text)
     share = float(found[1]) / 100.0 if found else 0.0
     if not SHARE < share <= 1.0:

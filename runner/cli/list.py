@@ -13,7 +13,7 @@ from runner.base.errors import RunnerError, unknown
 from runner.base.former_names import TOPICS as FORMER_TOPICS
 from runner.base.sanitize import escaped, one_line
 from runner.cli.arguments import Parser
-from runner.cli.commands import Topic, added_topics
+from runner.cli.commands import Topic, guests_topics, installed_topics
 from runner.config.compose.files import group_options, groups
 
 
@@ -25,15 +25,15 @@ def add_arguments(parser: Parser) -> None:
 
 def run(options: Namespace) -> int:
     """Print one topic with descriptions, or an overview of all."""
-    own = options.config_dir
+    own, topics = options.config_dir, {**TOPICS, **installed_topics()}
     if options.topic is None:
-        _print_overview(own)
-    elif options.topic in TOPICS:
-        _print_table(TOPICS[options.topic](own))
+        _print_overview(topics, own)
+    elif options.topic in topics:
+        _print_table(topics[options.topic](own))
     elif options.topic in FORMER_TOPICS:
         raise RunnerError(f"{options.topic} is now called {FORMER_TOPICS[options.topic]}.")
     else:
-        raise RunnerError(unknown("topic", options.topic, TOPICS, "list"))
+        raise RunnerError(unknown("topic", options.topic, topics, "list"))
     return 0
 
 
@@ -78,17 +78,17 @@ TOPICS: Mapping[str, Topic] = {
     "plants": _list_plants,
     "metrics": _list_metrics,
     "baselines": _list_baselines,
-    **added_topics(),
+    **guests_topics(),
 }
 """Topics: each has a function that returns names with one-line descriptions."""
 
 
-def _print_overview(own: Sequence[Path]) -> None:
+def _print_overview(topics: Mapping[str, Topic], own: Sequence[Path]) -> None:
     import shutil
     import textwrap
 
     width = shutil.get_terminal_size().columns
-    for topic, entries in TOPICS.items():
+    for topic, entries in topics.items():
         names = escaped(", ".join(entries(own))) or "none"
         indent = " " * 15
         print(textwrap.fill(f"{topic:<13}  {names}", width, subsequent_indent=indent, break_on_hyphens=False))

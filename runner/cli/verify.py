@@ -112,6 +112,11 @@ def _read(name: str, path: Path) -> None:
         from runner.identification.result import open_identification
 
         open_identification(path)
+    elif name == "challenges":
+        from runner.sweeps.challenge.stored import open_challenge
+
+        open_challenge(path)
+        store.open_sweep(path)
     elif name in ("sweeps", "tunings"):
         from runner.sweeps.status import read_pace
         from runner.sweeps.tuning.study import open_tuning

@@ -22,7 +22,6 @@ from runner.base.sanitize import one_line
 from runner.cli.arguments import Parser
 from runner.config.compose.files import outputs_dir
 from runner.papers.study.changes import KINDS, ROUNDED, Change, Value, changes, read_conclusions
-from runner.papers.study.names import study_names
 
 if TYPE_CHECKING:
     from runner.papers.reporting.published_claims import PublishedClaim
@@ -37,7 +36,7 @@ def add_arguments(parser: Parser) -> None:
     new.add_argument("folder", type=Path, metavar="DIR", help="a new folder, or an empty one")
     check = actions.add_parser("check", help="check a study")
     study = check.add_argument("study", metavar="DIR", help="the study's folder, or the name of an installed one")
-    study.completer = lambda **_: study_names()  # type: ignore[attr-defined]
+    study.completer = _names  # type: ignore[attr-defined]
     check.add_shared(output="outputs folder (default: outputs)")
     check.set_defaults(output=outputs_dir())
     check.add_argument("--code", action="store_true", help="run the Python of DIR")
@@ -46,6 +45,13 @@ def add_arguments(parser: Parser) -> None:
     diff.add_argument("new", type=Path, metavar="NEW", help="file or folder of the later one")
     diff.add_argument("--all", action="store_true", help=f"print all changes, not {_TOLD} of a kind")
     diff.add_shared(json="print all changes as JSON")
+
+
+def _names(**_: object) -> Sequence[str]:
+    """Return the names of the studies, which complete the word of the line."""
+    from runner.papers.study.names import study_names
+
+    return study_names()
 
 
 def run(options: Namespace) -> int:

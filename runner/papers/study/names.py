@@ -2,14 +2,17 @@
 
 from collections.abc import Sequence
 from dataclasses import dataclass
-from importlib.metadata import EntryPoint, entry_points
 from importlib.util import find_spec
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 from runner.base.atomic import write_atomically
 from runner.base.errors import RunnerError, nearest
 from runner.base.former_names import FILES
 from runner.base.paths import STUDY_FILE, example_study_dir, studies_dir, studies_with
+
+if TYPE_CHECKING:
+    from importlib.metadata import EntryPoint
 
 GROUP = "runner.studies"
 """The group of entry points by which an installed package says that it is a study."""
@@ -68,11 +71,13 @@ def find_study(text: str, others: Sequence[str] = ()) -> Location:
     )
 
 
-def _installed() -> tuple[EntryPoint, ...]:
+def _installed() -> "tuple[EntryPoint, ...]":
+    from importlib.metadata import entry_points  # slow, which completion of words does without
+
     return tuple(entry_points(group=GROUP))
 
 
-def _folder_of(point: EntryPoint) -> Path:
+def _folder_of(point: "EntryPoint") -> Path:
     try:
         spec = find_spec(point.value)
     except ImportError as error:

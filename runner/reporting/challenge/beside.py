@@ -12,7 +12,6 @@ from runner.store.finished import Finished
 from runner.store.kinds import KINDS, outputs_of
 from runner.store.run import Run
 from runner.sweeps.challenge.stored import Challenge, open_challenge
-from runner.sweeps.challenge.table import read_values
 
 _DRAWS = 90  # of both sides for a variation: its looks, and its share of the turning values
 _FIXED = 0.4  # s for a variation: its config, check and compilation, and a share of the combinations
@@ -41,13 +40,15 @@ def scope_line(answers: Sequence[Answer], folders: Sequence[Path], words: Sequen
 
 def _time_text(answer: Answer, outputs: Path) -> str:
     """Return the expected time of a challenge in brackets, from the times of two stored runs; empty if unknown."""
+    from runner.sweeps.challenge.table import read_values  # Hydra, which pages do without
+
     pairs = answer.pairs
     if pairs is None:
         return ""
     names = pairs.a.hashes[int(pairs.of_a[0])], pairs.b.hashes[int(pairs.of_b[0])]
     try:
         draws = sum(_seconds_of_draw(Finished(outputs).open(name)) for name in names)
-    except (RunnerError, KeyError):  # a run is in another outputs folder or keeps no trace; its times are not known
+    except (RunnerError, KeyError, TypeError):  # a run is elsewhere, keeps no trace, or failed at once
         return ""
     variations = sum(map(len, read_values(()).values()))
     seconds = variations * (_FIXED + _DRAWS * draws / len(names))

@@ -236,6 +236,14 @@ def test_what_does_not_apply_is_left_out_with_its_reason(sweep):
     assert order == sorted(order)
 
 
+def test_verify_reads_a_challenge_as_one(cli, ended, tmp_path):
+    folder = tmp_path / "outputs" / "challenges" / ended.folder.name
+    shutil.copytree(ended.folder, folder)
+    assert cli("verify").out == "challenges: 1 as written\n"
+    (folder / "challenge.json").write_text((folder / "challenge.json").read_text().replace("reversed", "holds"))
+    assert "challenges: 1 damaged" in cli("verify").out
+
+
 def test_a_damaged_challenge_is_told(cli, ended, tmp_path):
     folder = tmp_path / "outputs" / "challenges" / ended.folder.name
     shutil.copytree(ended.folder, folder)

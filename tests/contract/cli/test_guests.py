@@ -78,7 +78,7 @@ def test_an_installed_package_adds_a_command_a_topic_and_figures(cli):
     assert "Usage: runner greet person" in cli("greet").err
     assert "  greet        Greet a person." in cli("--help").out.splitlines()
     assert "greet" in cli("gret").err
-    assert commands.added_topics()["greetings"]([]) == {"hello": "A greeting."}
+    assert cli("list", "greetings").out == "hello  A greeting.\n"
     compose = commands.find_document(Path("greeting"))
     assert compose is not None
     assert compose() == ("a document", Path("greeting"))

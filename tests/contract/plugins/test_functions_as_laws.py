@@ -227,3 +227,12 @@ def test_python_refuses_a_function_without_source(laws):
     exec("def unread(t, q, dq, desired, arm): return q", space)
     with pytest.raises(ConfigError, match=r"controller: the source of unread \(<string>, line 1\) cannot be read"):
         runner.run(*RUN, controller=space["unread"])
+
+
+def test_the_source_of_another_text_is_not_taken(laws, monkeypatch):
+    """Since Python 3.13 the text of `python -c` is found under <string>, which is the name of any exec."""
+    space = {"__name__": "__main__"}
+    exec("def unread(t, q, dq, desired, arm): return q", space)
+    monkeypatch.setattr("inspect.getsource", lambda _: "import sys; print(sys.argv)\n")
+    with pytest.raises(ConfigError, match=r"controller: the source of unread \(<string>, line 1\) cannot be read"):
+        runner.run(*RUN, controller=space["unread"])

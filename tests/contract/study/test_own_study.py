@@ -181,7 +181,9 @@ def test_a_cover_shows_a_run_in_motion_and_one_that_is_none_is_told(tmp_path, ma
 
 def test_a_part_has_sections_and_a_file_of_python_is_a_chapter(tmp_path, made):
     about = "title: T\nsource: S\nabstract: A\nchapters: [{title: Part, sections: [one.md, two.py]}]\n"
-    code = "from runner.reporting.document import Section\ndef sectionruns:\n    return Sectionf'{lenruns} runs'\n"
+    code = (
+        "from runner.reporting.document import Section\ndef section(runs):\n    return Section(f'{len(runs)} runs')\n"
+    )
     folder = a_study(tmp_path / "paper", study__yaml=about, two__py=code)
     _, (part,) = read(folder, made, allow_code=True)
     assert [section.title for section in part.sections] == ["One", "4 runs"]
