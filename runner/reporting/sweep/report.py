@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 
 from runner.base.arrays import FloatArray
 from runner.base.dotted_keys import split_override
-from runner.base.quantities import quantity
+from runner.base.quantities import in_one_unit
 from runner.base.sanitize import few, one_line
 from runner.reporting.answer_map import make_map
 from runner.reporting.answers import Answer
@@ -132,10 +132,12 @@ def _key_numbers(subject: Subject) -> list[tuple[str, str, str]]:
     numbers.append(("failed", str(len(failed)), few([*map(subject.cell_name, failed)], _NAMED, "; ")))
     found = range_told(subject)
     if found is not None:
-        values = subject.measurements.values[subject.metrics[0]]
-        finite = values[np.isfinite(values)]
-        worst = quantity(float(finite.max()), subject.measurements.units[subject.metrics[0]])
-        numbers.append((found[0], found[1], f"medians of the cells; worst draw {worst}"))
+        metric = subject.metrics[0]
+        values = subject.measurements.values[metric]
+        medians = [float(subject.medians[metric][cell]) for cell in (subject.ranked[0], subject.ranked[-1])]
+        worst = float(values[np.isfinite(values)].max())
+        *_, worst_text = in_one_unit([*medians, worst], subject.measurements.units[metric])
+        numbers.append((found[0], found[1], f"medians of the cells; worst draw {worst_text}"))
     sides = [(subject.measurements, np.arange(count))]
     joint = limiting_joint(sides)
     return [*numbers, ("at its torque limit", *joint)] if joint[0] else numbers

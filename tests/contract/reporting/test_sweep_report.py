@@ -124,6 +124,7 @@ def test_the_first_screen_counts_cells_and_names_no_best(document, sweep12):
     assert what == "largest tracking error"
     assert of.startswith("medians of the cells; worst draw ")
     assert " to " in found
+    assert of.split()[-1] == found.split()[-1]  # one unit
 
 
 def test_the_metric_asked_for_ranks_the_cells(sweep12):
