@@ -74,8 +74,10 @@ MODULES: dict[str, str] = {
     "runner.reporting.equation": "runner.papers.reporting.equation",
     "runner.reporting.formulas": "runner.reporting.mathml",
     "runner.reporting.published_claims": "runner.papers.reporting.published_claims",
+    "runner.store.atomic": "runner.base.atomic",
     "runner.studies": "runner.papers.studies",
     "runner.study": "runner.papers.study",
+    "runner.symbolic.cache": "runner.base.cache",
 }
 """Present name of each former module or package."""
 

@@ -12,6 +12,7 @@ from runner.base.dotted_keys import dotted, leaves
 from runner.base.errors import ConfigError, RunnerError
 from runner.base.machine import read_machine
 from runner.base.quantities import above_rounding, number, quantity, with_powers
+from runner.caveats.versions import changes_since
 from runner.config.compose.compose import compose
 from runner.metrics.rounding import SENSITIVE, STEP
 from runner.reporting.document import Block, Code, Cover, Document, Notice, Provenance, Section, Table, Text
@@ -26,7 +27,6 @@ from runner.reporting.table import Column, numbers
 from runner.reporting.words import PLANT, in_words, join_values
 from runner.store import Run
 from runner.store.baselines import check_run, find_shipped
-from runner.store.run import caveat_changes
 
 Changes = Mapping[str, tuple[Any, Any]]
 """Key, value in its group, and value of the run."""
@@ -177,7 +177,7 @@ def caveat_notices(run: Run) -> list[Block]:
         Notice("warning", f"Caveat: {caveat['rule']}", literal(f"{capital(str(caveat['text']))}."))
         for caveat in run.caveats
     ]
-    changes = caveat_changes(run.caveat_rules)
+    changes = changes_since(run.caveat_rules)
     if changes:
         text = f"This run's caveats were looked for by {'; '.join(changes)}. The same command would not look again."
         notices.append(Notice("warning", "Caveats by other rules than today's", literal(text)))

@@ -237,15 +237,6 @@ def units_of(table: Any) -> dict[str, str]:
     return {field.name: (field.metadata or {}).get(b"unit", b"").decode() for field in table.schema}
 
 
-def caveat_changes(
-    rules: Mapping[str, Any] | None, today: Mapping[str, Mapping[str, float]] | None = None
-) -> list[str]:
-    """Return the differences between stored rules of caveats and the current rules; see changes_since."""
-    from runner.caveats.versions import changes_since  # imports all rules
-
-    return changes_since(rules, today)
-
-
 def describe_failure(failure: Mapping[str, Any]) -> str:
     """Return a message with the time, location and reason of a failure.
 

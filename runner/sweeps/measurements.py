@@ -88,11 +88,11 @@ class Measurements:
     @cached_property
     def caveat_changes(self) -> Mapping[str, int]:
         """Differences between the stored caveat rules and the current ones, each with the number of cells."""
-        from runner.store.run import caveat_changes
+        from runner.caveats.versions import changes_since  # imports all rules
 
         found: Counter[str] = Counter()
         for rules, count in self.caveat_rules:
-            found.update(dict.fromkeys(caveat_changes(rules), count))
+            found.update(dict.fromkeys(changes_since(rules), count))
         return found
 
     @cached_property
