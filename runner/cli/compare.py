@@ -215,15 +215,19 @@ def _compare_recording(given: Sequence[Path], recordings: Sequence[Path], option
     if kind_of(folders[0]) != "run":
         raise RunnerError(f"{folders[0]}: it is a sweep. Allowed: one run and one recording.")
     from runner import store
+    from runner.base import progress
+    from runner.recordings.compare import compare_recording
 
+    progress.begin("reading runs")
     run = store.open_run(folders[0])
-    _print_recording(run, recordings[0], options.columns, options.fill_gaps or 0.0, options)
+    _print_recording(compare_recording(run, recordings[0], options.columns, options.fill_gaps or 0.0), options)
 
 
 def _replay(recording: Path, options: Namespace) -> None:
     """Make the run of a log, and compare it with the log."""
     from runner.config.compose.files import outputs_dir
     from runner.doctor.replay import replay
+    from runner.recordings.compare import compare_recording
 
     made = replay(
         recording,
@@ -235,29 +239,22 @@ def _replay(recording: Path, options: Namespace) -> None:
     )
     for note in made.notes:
         print(one_line(f"runner: motion: {note}"), file=sys.stderr)
-    if not made.commanded:
-        print(
-            "runner: the log has no commanded positions: the run follows the measured ones, so that only torques say "
-            "something of the model",
-            file=sys.stderr,
-        )
     if made.run.status != "ok":
         raise RunnerError(
             f"{made.run.folder}: the run {made.run.failure}; it cannot be compared. Try another --controller."
         )
-    _print_recording(made.run, recording, made.columns, options.fill_gaps or made.fill_gaps, options)
+    found = compare_recording(
+        made.run, recording, made.columns, options.fill_gaps or made.fill_gaps, not made.commanded
+    )
+    _print_recording(found, options)
 
 
-def _print_recording(run: "Run", recording: Path, columns: Path, fill_gaps: float, options: Namespace) -> None:
+def _print_recording(found: "RecordingComparison", options: Namespace) -> None:
     """Print the differences between a recording and a run, and write the report; its folder is the last line."""
-    from runner.base import progress
-    from runner.recordings.compare import compare_recording
     from runner.reporting.recording_report import recording_document, report_folder
     from runner.reporting.render import write_report
     from runner.store.kinds import note
 
-    progress.begin("reading runs")
-    found = compare_recording(run, recording, columns, fill_gaps)
     print(_recording_text(found), end="\n\n")
     made = options.output or report_folder(found)
     write_report(recording_document(found), made)

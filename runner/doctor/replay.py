@@ -66,6 +66,9 @@ def replay(
         raise RunnerError(
             f"{log}: {asked}. `runner doctor {log} --robot {robot} -o FOLDER` writes a map to complete for --columns"
         )
+    torques = [] if found.recording is None else found.recording.of_kind("torque")
+    if not (found.motion.commanded or torques):
+        raise RunnerError(f"{log}: has neither commanded positions nor torques, so that a replay says nothing.")
     texts = {MOTION: found.motion.text} | ({MAP: map_text(found, None, None)} if columns is None else {})
     digest = hashlib.sha256("\0".join((robot, *texts.values())).encode()).hexdigest()[:24]
     folder = outputs / FOLDER / digest

@@ -93,6 +93,7 @@ class RecordingComparison:
         simulated_friction: Viscous and Coulomb friction of each joint in the run, by joint.
         lags: How much later than its command each joint moves, by joint, in s: in the recording, and in the run, NaN if
             its desired motion is not one of joints.
+        follows_measured: Whether the run follows the recorded positions, so that they say nothing of the model.
         by_commands: Whether the run was aligned by commanded positions, so that a lag of the arm is not in the offset.
     """
 
@@ -106,6 +107,7 @@ class RecordingComparison:
     no_friction: str
     simulated_friction: Mapping[str, tuple[float, float]]
     lags: Mapping[str, tuple[float, float]]
+    follows_measured: bool
     by_commands: bool
 
     @property
@@ -115,7 +117,9 @@ class RecordingComparison:
         return float(t[0]), float(t[-1])
 
 
-def compare_recording(run: Run, path: Path, columns: Path, fill_gaps: float = 0.0) -> RecordingComparison:
+def compare_recording(
+    run: Run, path: Path, columns: Path, fill_gaps: float = 0.0, follows_measured: bool = False
+) -> RecordingComparison:
     """Compare a recording with a run.
 
     Args:
@@ -123,6 +127,7 @@ def compare_recording(run: Run, path: Path, columns: Path, fill_gaps: float = 0.
         path: The recording; see read_table.
         columns: What its columns are, YAML; see ColumnsMap.
         fill_gaps: Longest gap of the recording that is filled, in s; 0 for none.
+        follows_measured: Whether the run follows the recorded positions.
 
     Raises:
         RunnerError: if a file cannot be read or does not fit the run; names what is wrong, and its line or column.
@@ -179,6 +184,7 @@ def compare_recording(run: Run, path: Path, columns: Path, fill_gaps: float = 0.
         no_friction=reason,
         simulated_friction=_simulated_friction(run, trace.joint_names),
         lags=dict(_lags(recording, setting)),
+        follows_measured=follows_measured,
         by_commands=bool(commands),
     )
 

@@ -103,9 +103,10 @@ def _accuracy(
     times: tuple[float, float],
 ) -> Accuracy:
     rows = np.concatenate([np.arange(part.start, part.stop) for part in parts])
-    reached = {one.signal.of: _below(np.abs(one.values[rows])) for one in _of_kind(found, "position")}
+    positions = [] if found.follows_measured else _of_kind(found, "position")
+    reached = {one.signal.of: _below(np.abs(one.values[rows])) for one in positions}
     worst = max(reached, key=reached.__getitem__, default="")
-    units = {one.signal.of: one.unit for one in _of_kind(found, "position")}
+    units = {one.signal.of: one.unit for one in positions}
     torques = _of_kind(found, "torque")
     size = sum(float(np.sum(one.recorded[rows] ** 2)) for one in torques)
     off = sum(float(np.sum(one.values[rows] ** 2)) for one in torques)
@@ -126,7 +127,7 @@ def _accuracy(
 def _tip_distance(found: RecordingComparison, rows: FloatArray) -> float:
     by_joint = {one.signal: one for one in _of_kind(found, "position")}
     wanted = [Signal("position", joint) for joint in found.model.joint_names]
-    if not all(signal in by_joint for signal in wanted):
+    if found.follows_measured or not all(signal in by_joint for signal in wanted):
         return np.nan
     some = rows[:: max(1, len(rows) // _MOST_ROWS)]
     recorded, simulated = (

@@ -25,7 +25,8 @@ def verdict_lines(found: RecordingComparison) -> Iterator[str]:
         found: The recording and the run.
     """
     first, last = found.span
-    said = [text for text in (_positions(found.residuals), _torques(found.residuals)) if text]
+    positions = "" if found.follows_measured else _positions(found.residuals)
+    said = [text for text in (positions, _torques(found.residuals)) if text]
     count = len(cut_at_rests(found))
     many = f", on {count} motions," if count > 1 else ""
     yield f"Over {quantity(last - first, 's')}{many} the model predicts {' and '.join(said)}."
@@ -135,6 +136,8 @@ def _untold(found: RecordingComparison) -> Iterator[str]:
         lacking = [reason.partition(":")[0] for reason in found.friction.lacking]
         if lacking:
             yield f"friction of {', '.join(lacking)}"
+    if found.follows_measured:
+        yield "the accuracy of positions, because the run follows the measured ones"
     if not found.lags:
         yield "a lag of the arm, as it holds no commands"
     if not found.recording.of_kind("torque"):

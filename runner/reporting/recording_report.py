@@ -83,7 +83,7 @@ def _key_numbers(found: RecordingComparison) -> list[tuple[str, str, str]]:
     rows = f"after the recording's first row; rows {quantity(recording.period, 's')} apart"
     numbers = [("the run begins at", offset, rows)]
     moved = [(one.fit, one) for one in found.residuals if one.signal.kind != "torque" and one.fit is not None]
-    if moved:
+    if moved and not found.follows_measured:
         fit, worst = min(moved, key=lambda pair: pair[0])
         told = f"{worst.signal.words}; rms of the residual {quantity(worst.rms, worst.unit)}"
         numbers.append(("worst fit of a position", f"{fit:.3f}", told))

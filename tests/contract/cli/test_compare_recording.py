@@ -171,7 +171,9 @@ def test_a_log_without_commands_follows_its_measured_positions_and_says_so(cli, 
     write_log(tmp_path / "log.csv", commands=False)
     ending = cli("compare", "log.csv", "--robot", "macro", "--controller", "joint_pd")
     assert ending.code == 0
-    assert "the log has no commanded positions: the run follows the measured ones" in ending.err
+    first, *_ = ending.out.splitlines()
+    assert re.match(r"Over [\d.]+ s, on 2 motions, the model predicts torques to ", first)
+    assert "the accuracy of positions, because the run follows the measured ones" in ending.out
     (made,) = (tmp_path / "outputs" / "runs").iterdir()
     assert runner.open_run(made).config["controller"]["kind"] == "joint_pd"
 
@@ -191,4 +193,17 @@ def test_bad_replays_end_with_one_sentence(cli, tmp_path, words, told):
     ending = cli("compare", *words)
     assert ending.code == 2
     assert told in ending.err
+    assert not (tmp_path / "outputs").exists()
+
+
+@pytest.mark.costs(3)
+def test_a_log_of_positions_alone_is_not_replayed(cli, tmp_path):
+    write_log(tmp_path / "log.csv", commands=False)
+    header, *lines = (tmp_path / "log.csv").read_text().splitlines()
+    kept = [place for place, name in enumerate(header.split(",")) if "current" not in name]
+    rows = [",".join(line.split(",")[place] for place in kept) for line in (header, *lines)]
+    (tmp_path / "log.csv").write_text("\n".join(rows) + "\n")
+    ending = cli("compare", "log.csv", "--robot", "macro")
+    assert ending.code == 2
+    assert "has neither commanded positions nor torques, so that a replay says nothing" in ending.err
     assert not (tmp_path / "outputs").exists()

@@ -20,6 +20,7 @@ def comparison(moves, off=0.001, torque=10.0, torque_off=1.0):
         q += 0.5 * distance * (1.0 - np.cos(np.pi * share))
     size = np.full(len(T), torque)
     return SimpleNamespace(
+        follows_measured=False,
         model=SimpleNamespace(joint_names=("q1", "q2")),
         residuals=[
             Residual(Signal("position", "q1"), "rad", T, q + off, q),
