@@ -25,7 +25,7 @@ _RECORDED, _SIMULATED = 0, 1  # colours
 _PEAK = "A speed is a share of the largest one of its joint."
 _ACCURACY: list[str | Column] = [
     "motion",
-    *numbers("from [s]", "to [s]"),
+    *numbers("from (s)", "to (s)"),
     "peak speed",
     "positions, 95 % of the time",
     "tip, 95 %",
@@ -79,7 +79,7 @@ def _abstract(found: RecordingComparison) -> str:
 def _key_numbers(found: RecordingComparison) -> list[tuple[str, str, str]]:
     """Return the offset, the worst fit of a position and the largest Coulomb friction that was identified."""
     recording = found.recording
-    offset = quantity(found.offset.start, "s", digits=4)
+    offset = quantity(round(found.offset.start, 7), "s", digits=4)  # what it was searched to
     rows = f"after the recording's first row; rows {quantity(recording.period, 's')} apart"
     numbers = [("the run begins at", offset, rows)]
     moved = [(one.fit, one) for one in found.residuals if one.signal.kind != "torque" and one.fit is not None]
