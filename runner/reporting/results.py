@@ -11,8 +11,6 @@ from runner.base.atomic import write_atomically
 from runner.base.errors import RunnerError, StoreError
 from runner.base.quantities import with_powers
 from runner.base.sanitize import one_line
-from runner.identification.result import open_identification
-from runner.identification.words import answer_lines
 from runner.reporting.challenge.words import challenge_answer
 from runner.reporting.figures import still_motion
 from runner.reporting.metric_titles import key_metrics
@@ -25,6 +23,7 @@ from runner.reporting.templating import html_environment
 from runner.store import Calibration, Run, Sweep, open_stored
 from runner.store.kinds import KINDS
 from runner.store.listing import Entry, list_entries, runs_of_sweeps
+from runner.store.run import open_run
 from runner.store.seal import SchemaError
 from runner.sweeps.challenge.stored import open_challenge
 from runner.sweeps.measurements import measure_sweep
@@ -32,7 +31,7 @@ from runner.sweeps.status import find_status
 from runner.sweeps.tuning.study import open_tuning
 
 _MOST_CELLS = 1000  # of a sweep whose answer is computed
-_MOST_THUMBNAILS = 60
+_MOST_THUMBNAILS = 24  # of the newest results
 _LONGEST = 100
 # Errors of a file whose digest is right and whose content is not, as an edited or forged one has.
 _MISFITS = (ArithmeticError, AttributeError, LookupError, TypeError, ValueError)
@@ -126,9 +125,8 @@ def _row(entry: Entry, sizes: Mapping[str, int]) -> Row:
         return Row(entry, "", state="unfinished")
     try:
         if entry.kind == "identification":
-            known = open_identification(entry.folder)
-            return Row(entry, known.command, next(answer_lines(known)), str(len(known.logs)))
-        found = open_stored(entry.folder)
+            return _identification_row(entry)
+        found = open_run(entry.folder) if entry.kind == "run" else open_stored(entry.folder)
         if isinstance(found, Sweep):
             with_runs = entry.size + sum(sizes.get(name, 0) for name in set(found.hashes))
             return _sweep_row(replace(entry, size=with_runs), found)
@@ -142,6 +140,14 @@ def _row(entry: Entry, sizes: Mapping[str, int]) -> Row:
     except _MISFITS as error:
         text = f"its content does not fit together: {type(error).__name__}: {error}"
         return Row(entry, "", one_line(text), state="damaged")
+
+
+def _identification_row(entry: Entry) -> Row:
+    from runner.identification.result import open_identification
+    from runner.identification.words import answer_lines
+
+    known = open_identification(entry.folder)
+    return Row(entry, known.command, next(answer_lines(known)), str(len(known.logs)))
 
 
 def _run_row(entry: Entry, run: Run) -> Row:
@@ -175,6 +181,7 @@ def write_page(rows: Sequence[Row], outputs: Path, path: Path) -> None:
         StoreError: if it cannot be written.
     """
     progress.begin("writing the page")
+    here, there = Path.cwd(), path.resolve().parent
     listed = [
         {
             "when": row.when,
@@ -183,8 +190,8 @@ def write_page(rows: Sequence[Row], outputs: Path, path: Path) -> None:
             "standing": row.standing,
             "what": row.what,
             "answer": row.answer,
-            "folder": os.path.relpath(row.entry.folder, Path.cwd()),
-            "link": _link(row.entry, outputs, path),
+            "folder": os.path.relpath(row.entry.folder, here),
+            "link": _link(row.entry, outputs, there),
             "thumbnail": data_uri(_thumbnail(row)) if place < _MOST_THUMBNAILS and row.state == "good" else "",
         }
         for place, row in enumerate(rows)
@@ -204,10 +211,10 @@ def write_page(rows: Sequence[Row], outputs: Path, path: Path) -> None:
     write_atomically(path, page.encode("utf-8", "replace"))
 
 
-def _link(entry: Entry, outputs: Path, page: Path) -> str:
-    """Return the address of the report on a result, of its folder without one."""
+def _link(entry: Entry, outputs: Path, place: Path) -> str:
+    """Return the address of the report on a result, of its folder without one, from the folder of the page."""
     report = outputs / KINDS["report"].folder / report_name([entry.folder]) / "report.html"
-    return os.path.relpath(report if report.is_file() else entry.folder, page.resolve().parent)
+    return os.path.relpath(report if report.is_file() else entry.folder, place)
 
 
 def _thumbnail(row: Row) -> str:

@@ -1,5 +1,6 @@
 """List of everything in an outputs folder, and removal of what is old and not needed by what stays."""
 
+import os
 import shutil
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
@@ -117,11 +118,23 @@ def remove(entries: Sequence[Entry]) -> None:
 def _entries(kind: Kind, folder: Path) -> Iterator[Entry]:
     of = KINDS[kind]
     for path in folder.glob("[!.]*"):
-        files = [each for each in path.rglob("*") if each.is_file()] if path.is_dir() and not path.is_symlink() else []
-        marks = [path / name for name in of.files if (path / name).is_file()]
+        if not path.is_dir():
+            continue
+        files = dict(_files(path, deep=not path.is_symlink()))
+        marks = [files[name] for name in of.files if name in files]
         if not marks:
             continue
         needed = (*of.files[:1], *of.more) if kind != "report" else ()
-        size = sum(each.stat().st_size for each in files)
-        finished = all((path / name).exists() for name in needed)
-        yield Entry(kind, path, marks[0].stat().st_mtime, size, finished)
+        size = sum(each.st_size for each in files.values())
+        yield Entry(kind, path, marks[0].st_mtime, size, files.keys() >= set(needed))
+
+
+def _files(folder: str | Path, within: str = "", deep: bool = True) -> Iterator[tuple[str, os.stat_result]]:
+    """Yield path and status of the files in a folder, and in its own folders if `deep`."""
+    with os.scandir(folder) as found:
+        for each in found:
+            if each.is_dir(follow_symlinks=False):
+                if deep:
+                    yield from _files(each.path, f"{within}{each.name}/")
+            elif each.is_file():
+                yield f"{within}{each.name}", each.stat()

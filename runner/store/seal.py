@@ -4,13 +4,12 @@ A damaged file is detected when it is read, and never used. A digest detects acc
 edit. It does not detect forgery, because anyone can compute a new digest.
 """
 
-import copy
 import hashlib
 import json
 import re
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
-from functools import cached_property
+from functools import cached_property, lru_cache
 from pathlib import Path
 from typing import Any
 
@@ -31,7 +30,8 @@ _NAMED = ("runs", "calibrations")  # parents of folders that have the name of th
 # Keys for the location, name and report of a run. They do not affect the simulation.
 _LEFT_OUT = ("caveats", "limits", "outputs", "preset", "spec", "sweep")
 _TRAJECTORIES = Memory(256)
-_PARTS = Memory(512)  # of configs, which in one folder are mostly equal
+_SCALARS = frozenset({bool, float, int, str})
+# The runner writes no aliases and few braces, and only these can exceed the bounds of YAML.
 _UNUSUAL = re.compile(r"[&?]|\[(?!\])|\{(?!\})|^ {60}|(- ){4}", re.M)
 _BLANK = "0" * 64
 _DIGEST = re.compile(rb'"digest": "([0-9a-f]{64})"')
@@ -300,9 +300,9 @@ def read_job(folder: Path, record_name: str) -> tuple[dict[str, Any], dict[str, 
     record = _read_record(folder / record_name)
     path = folder / "config.yaml"
     text = decode_text(path, read_file(path, record["files"], MEND))
-    try:  # the runner writes no aliases or braces, and only these can exceed the bounds; the bounds take time
-        ours = len(text) <= STORED.size.most and not _UNUSUAL.search(text)
-        config = _read_parts(text) if ours else read_yaml(text, path)
+    try:
+        config = _read_parts(text) if len(text) <= STORED.size.most else None
+        config = read_yaml(text, path) if config is None else config
     except (yaml.YAMLError, YamlError) as error:
         raise DamagedError(f"cannot read {path}: it is damaged: {' '.join(str(error).split())}; {MEND}") from error
     if not isinstance(config, dict):
@@ -311,18 +311,30 @@ def read_job(folder: Path, record_name: str) -> tuple[dict[str, Any], dict[str, 
 
 
 def _read_parts(text: str) -> Any:
-    """Return the YAML content of a stored config. Its top-level keys are parsed one by one, and equal ones once."""
+    """Return the YAML content of a stored config; None if only a bounded reader may read it.
+
+    Its top-level keys are parsed one by one, and equal ones once.
+    """
     config: dict[str, Any] = {}
-    for part in re.split(r"^(?=\S)", text, flags=re.MULTILINE):
-        found = copy.deepcopy(_PARTS.recall(_read_yaml, part)) if part else {}
+    for part in filter(None, re.split(r"^(?=\S)", text, flags=re.MULTILINE)):
+        found = _read_part(part)
         if not isinstance(found, dict):
-            return _read_yaml(text)
-        config |= found
+            return None
+        config |= _copied(found)
     return config
 
 
-def _read_yaml(text: str) -> Any:
-    return yaml.load(text, yaml.CSafeLoader)
+@lru_cache(512)
+def _read_part(text: str) -> Any:
+    """Return YAML content without its bounds, which take time; None where it has what can exceed them."""
+    return None if _UNUSUAL.search(text) else yaml.load(text, yaml.CSafeLoader)
+
+
+def _copied(value: Any) -> Any:
+    """Return a copy of YAML content, whose containers are dictionaries and lists; it is faster than `copy.deepcopy`."""
+    if isinstance(value, dict):
+        return {key: each if type(each) in _SCALARS else _copied(each) for key, each in value.items()}
+    return [_copied(each) for each in value] if isinstance(value, list) else value
 
 
 def check_job(folder: Path, record_name: str) -> dict[str, Any]:
