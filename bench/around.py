@@ -19,10 +19,10 @@ from runner.config.validation import validate
 from runner.metrics.summary import measure
 from runner.plugins.metric_units import units_of
 from runner.sensing.encoders import encoder_errors
-from runner.simulation.assembly import assemble, metric_context
+from runner.simulation.assembly import assemble
 from runner.simulation.loop import simulate
 from runner.simulation.provenance import job_provenance
-from runner.simulation.results import timing
+from runner.simulation.results import metric_context, timing
 from runner.simulation.sensors import make_encoders
 from runner.store import Outcome
 from runner.store.seal import JsonTexts

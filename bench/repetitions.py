@@ -8,7 +8,7 @@ import resource
 import time
 
 from runner.config.compose.compose import compose
-from runner.config.limits import memory_of_run
+from runner.config.run_cost import memory_of_run
 from runner.config.validation import validate
 from runner.simulation.run import simulate_blocks
 

@@ -22,9 +22,10 @@ from runner.metrics import summary
 from runner.metrics.summary import measure
 from runner.plants import PLANTS
 from runner.plants.rk4 import Rk4Config
-from runner.simulation.assembly import assemble_program, metric_context
+from runner.simulation.assembly import assemble_program
 from runner.simulation.batch import BatchResult, BatchSimulator, RunSpec
 from runner.simulation.compiled.loop_program import tangents
+from runner.simulation.results import metric_context
 from runner.store import Run, simulated_part
 from runner.symbolic.engine import evaluator
 

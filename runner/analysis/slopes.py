@@ -10,7 +10,7 @@ from runner.analysis.parameters import Key, Parameter
 from runner.base.arrays import FloatArray
 from runner.base.errors import ConfigError, RunnerError
 from runner.config.run import RunConfig
-from runner.simulation.assembly import describe_program, find_start
+from runner.simulation.assembly import describe_program, start_of
 from runner.simulation.batch import RunSpec, draw_errors
 from runner.simulation.compiled.law import structure_cache_key
 from runner.simulation.compiled.loop_program import LoopProgram, Setting
@@ -67,7 +67,7 @@ class Scene(RunSpec):
         times: FloatArray = np.arange(self.rows, dtype=np.float64) * self.loop_program.tick
         if not np.array_equal(_motion(self.config.path, times), _motion(config.path, times)):
             raise NoDerivativeError("it changes the desired motion, which is held")
-        if not np.array_equal(find_start(config), self.q_start):
+        if not np.array_equal(start_of(config), self.q_start):
             raise NoDerivativeError("it changes the start, which is held")
         return not np.array_equal(_vector(self.setting), _vector(self._changed(config).setting))
 

@@ -74,7 +74,7 @@ def signals_of(run: store.Run, repetition: int) -> Signals:
 
 def _simulated(run: store.Run, repetition: int) -> Signals:
     from runner.metrics.summary import evaluate
-    from runner.simulation.assembly import metric_context
+    from runner.simulation.results import metric_context
     from runner.simulation.run import simulate_repetition
     from runner.store.writing import trace_table
     from runner.sweeps.rerun import checked_config

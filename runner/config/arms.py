@@ -1,7 +1,7 @@
 """Outline and rigid-body model from a robot's config: URDF and MJCF files, and arms mounted on each other."""
 
 import math
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
 from dataclasses import dataclass, replace
 from functools import lru_cache
@@ -11,17 +11,19 @@ import numpy as np
 
 from runner.base.arrays import FloatArray
 from runner.base.errors import ConfigError
-from runner.base.paths import conf_dir
 from runner.config.robot import ArmConfig, RobotConfig, StageConfig
+from runner.config.robot_files import find_arm, keyed_arms
+from runner.config.torque_limits import TorqueLimitsConfig
 from runner.plants.friction_law import joint_friction
-from runner.robots.description import find_file, find_urdf, mjcf_of, read_arm, read_urdf, with_payloads
+from runner.plants.motor_limits import TorqueLimits
+from runner.robots.description import mjcf_of, read_arm, read_urdf, with_payloads
 from runner.robots.elements import limit_of
 from runner.robots.inertials import Payload, armature_file, set_file
 from runner.robots.joint_dynamics import dynamics_of
 from runner.robots.model import RobotModel
 from runner.robots.mounting import TOOL_TIP, mount, mount_tool
-from runner.robots.robot import Robot, Stage
-from runner.robots.tree import check_tip, is_mjcf, tree_of
+from runner.robots.robot import Robot, Stage, by_joint
+from runner.robots.tree import check_tip, tree_of
 from runner.schema.values import MountConfig, expand
 from runner.sensing.force_torque import ForceTorqueConfig
 
@@ -95,6 +97,25 @@ class RobotOutline:
     def effort_limits(self) -> FloatArray:
         """Effort limit of each joint, shape (nq,), in N m; infinite where there is none."""
         return np.concatenate([stage.effort_limits for stage in self.stages])
+
+    def torque_limits(self, limits: TorqueLimitsConfig) -> TorqueLimits:
+        """Return the torque limits of each joint: the effort limit of its file if it is smaller than `limits.max`.
+
+        Raises:
+            ConfigError: for values that do not fit the robot's stages and joints, and a speed without a torque.
+        """
+        most = np.minimum(by_joint("torque_limits.max", limits.max, self.stage_joints), self.effort_limits)
+        speed = by_joint("torque_limits.no_load_speed", limits.no_load_speed, self.stage_joints)
+        joints = [joint for own in self.stage_joints.values() for joint in own]
+        endless = [
+            name for name, torque, own in zip(joints, most, speed, strict=True) if own < np.inf and torque == np.inf
+        ]
+        if endless:
+            raise ConfigError(
+                f"torque_limits.no_load_speed: needs a torque limit; none for {', '.join(endless)}. Set "
+                "torque_limits.max"
+            )
+        return TorqueLimits(most, speed)
 
 
 def read_outline(config: RobotConfig, config_dirs: Sequence[Path] = ()) -> RobotOutline:
@@ -195,59 +216,6 @@ def _build(outline: RobotOutline, gravity: float, sensor: tuple[float, float] | 
         first = joints.stop
     model = RobotModel(whole, tip, gravity) if len(stages) > 1 else stages[0].model
     return Robot(whole, model, tuple(stages), last.prefix + last.config.tip, tuple(config.payload.position))
-
-
-def keyed_arms(config: RobotConfig) -> list[tuple[str, ArmConfig]]:
-    """Return the arms of a robot, each with the key of its group."""
-    several = len(config.arms) > 1
-    return [(f"robot.stages.{name}" if several else "robot", arm) for name, arm in config.arms.items()]
-
-
-def find_arm(key: str, arm: ArmConfig, config_dirs: Sequence[Path]) -> Path:
-    """Return the file of an arm, in the format of its key.
-
-    Raises:
-        ConfigError: for no file or two, a file that does not exist, or an MJCF given as URDF.
-    """
-    if (arm.urdf is None) == (arm.mjcf is None):
-        found = "neither" if arm.urdf is None else f"both, '{arm.urdf}' and '{arm.mjcf}'"
-        raise ConfigError(f"{key}.urdf, {key}.mjcf: found {found}; give one file, and null for the other")
-    path = find_urdf(arm.urdf, config_dirs) if arm.urdf else find_file("robot.mjcf", str(arm.mjcf), config_dirs)
-    if arm.urdf and is_mjcf(path):
-        raise ConfigError(f"{key}.urdf: {path} is an MJCF; name it at {key}.mjcf")
-    return path
-
-
-def sliding_joints(config: RobotConfig, config_dirs: Sequence[Path]) -> dict[str, dict[str, bool]]:
-    """Return by stage and joint whether the files define the joint as prismatic."""
-    trees = [read_arm(find_arm(key, arm, config_dirs)) for key, arm in keyed_arms(config)]
-    return {
-        name: {joint: tree.joints[joint].get("type") == "prismatic" for joint in tree.chain}
-        for name, tree in zip(config.arms, trees, strict=True)
-    }
-
-
-def mixed_arms(resolved: Mapping[str, object], option: str, config_dirs: Sequence[Path]) -> Iterator[str]:
-    """Yield a problem for each file of a built-in robot if a config folder has a file of the same name.
-
-    Args:
-        resolved: The config as plain data.
-        option: The option chosen in the group robot.
-        config_dirs: Config folders of the user.
-    """
-    option, robot = option.removesuffix(".yaml"), resolved.get("robot")
-    if not (isinstance(robot, Mapping) and (conf_dir() / "robot" / f"{option}.yaml").is_file()):
-        return
-    stages = robot.get("stages")
-    for arm in stages.values() if isinstance(stages, Mapping) else [robot]:
-        name = arm.get("urdf") if isinstance(arm, Mapping) else None
-        try:
-            ours, found = (find_urdf(str(name), folders) for folders in ((), config_dirs))
-        except ConfigError:
-            continue  # validation reports it
-        if found != ours:
-            named = f"robot.urdf: '{name}' of robot={option} is one of ours"
-            yield f"{named}, and {found} has the same name; rename that file, or choose the robot that it belongs to"
 
 
 @contextmanager

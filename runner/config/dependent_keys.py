@@ -18,14 +18,11 @@ from runner.controllers.force.hybrid_force import HybridForceConfig
 from runner.controllers.force.impedance import ImpedanceConfig
 from runner.controllers.macro_mini.macro_mini import MacroMiniConfig
 from runner.environments.push import PushConfig
-from runner.environments.wall import WallConfig
 from runner.plants import PLANTS
 from runner.plants.decoupled import TorquePlantConfig
 from runner.plants.friction_law import joint_friction
 from runner.robots.mismatch import MISMATCHES
-from runner.sensing.force_torque import ForceTorqueConfig
 from runner.sensing.velocity import Velocity, gains
-from runner.trajectories.joint_motion import TipOfJoints
 
 _FRICTION = "robot.friction"
 _PLAIN = {"wrist_sensor": "ideal"}  # option of a group that sets nothing; of other groups none
@@ -107,7 +104,8 @@ def _is_special(config: RunConfig, group: str) -> bool:
     if config.composed.choices[group] == _PLAIN.get(group, "none"):
         return False
     if group == "wrist_sensor":  # its mass loads the arm
-        return not (isinstance(config.wrist_sensor, ForceTorqueConfig) and config.wrist_sensor.mass > 0.0)
+        sensor = config.force_torque_sensor
+        return sensor is None or not sensor.mass > 0.0
     return group != "mismatch" or _keeps_lengths(config)
 
 
@@ -257,7 +255,7 @@ def _has_one_stage_or_all_comply(config: RunConfig) -> str | None:
 
 
 def _follows_joints(config: RunConfig) -> str | None:
-    joints = all(loop.follows_joints for loop in config.loops) and isinstance(config.path, TipOfJoints)
+    joints = all(loop.follows_joints for loop in config.loops) and config.follows_joints
     return f"trajectory.kind={config.composed.choices.get('trajectory')} is a motion of the joints" if joints else None
 
 
@@ -268,7 +266,7 @@ def _is_not_redundant(config: RunConfig) -> str | None:
 
 
 def _meets_no_wall(config: RunConfig) -> str | None:
-    return None if type(config.environment) is WallConfig else "environment is not a wall"
+    return "environment is not a wall" if config.wall is None else None
 
 
 def _checks_no_wall(config: RunConfig) -> str | None:

@@ -169,13 +169,17 @@ def _positions(config: RunConfig, times: FloatArray) -> FloatArray:
     return motion[:, 0]
 
 
-def start_posture(
-    controller: ControllerConfig, arm: Robot, start: FloatArray, ignore_base_rotation: bool
-) -> FloatArray:
-    """Return joint positions with the tip at a start, chosen by the controller.
+def find_start(controller: ControllerConfig, arm: Robot, path: Trajectory, ignore_base_rotation: bool) -> FloatArray:
+    """Return the initial joint positions, shape (nq,), in rad: those of a joint motion, or those of its controller.
 
     If the controller does not choose, the first stage moves and mounted stages stay at home.
+
+    Raises:
+        ConfigError: if the arm cannot reach the start of the path.
     """
+    if isinstance(path, TipOfJoints):
+        return path.q_start
+    start = path.start
     try:
         wanted = CONTROLLERS.start_posture(controller, arm, start)
     except np.linalg.LinAlgError as error:
@@ -197,30 +201,28 @@ _AT_LIMIT = 1e-6  # rad or m
 _SINGULAR = 0.1  # of the reach; damping already pulls the tip off the path near a singular configuration
 
 
-def check_feasible(
-    controller: ControllerConfig, arm: Robot, trajectory: Trajectory, q_start: FloatArray, tolerance: float, end: float
-) -> None:
+def check_feasible(config: RunConfig, q_start: FloatArray) -> None:
     """Check that a joint-position controller can move an ideal arm along the path, without speed limits and noise.
 
+    The tip may leave the path by `robot.settling_band`. Parts of the path after the end of the run are not checked.
+
     Args:
-        controller: Config of the controller.
-        arm: The robot.
-        trajectory: The desired motion.
+        config: The checked config.
         q_start: Joint positions at t = 0, shape (nq,), in rad.
-        tolerance: Largest allowed distance of the tip from the path, in m.
-        end: Time at which the run ends, in s; the check ignores later parts of the path.
 
     Raises:
         ConfigError: if the arm cannot follow the path, with time, joint and reason; or if the path is too fast, with
             the shortest feasible time.
     """
-    if not trajectory.tracked:
+    arm, trajectory, tolerance = config.arm, config.path, config.robot.settling_band
+    if not (trajectory.tracked and CONTROLLERS.features(config.controller.kind).FOLLOWS_PATHS):
         return
-    (loop,) = CONTROLLERS.build(controller, _without_speed_limits(arm))
+    (loop,) = CONTROLLERS.build(config.controller, _without_speed_limits(arm))
     if trajectory.duration < loop.period:
         raise ConfigError(
             f"trajectory.duration: {trajectory.duration:g} s is shorter than one controller period, {loop.period:g} s"
         )
+    end = config.timing.ticks * config.timing.tick
     lasts = min(trajectory.duration, max(end, loop.period))
     times: FloatArray = np.arange(math.floor(lasts / loop.period) + 1, dtype=np.float64) * loop.period
     try:

@@ -5,7 +5,6 @@ import numpy as np
 from runner.base.errors import ConfigError
 from runner.config.run import RunConfig
 from runner.controllers.joint_space.motor_pd import MotorPdConfig
-from runner.environments.wall import WallConfig
 from runner.plants import Plant, options_of
 from runner.plants.decoupled import TorquePlantConfig, find_motion
 from runner.plants.flexible_joints import Flexibility, FlexibleJoints, MotorSide, links_of
@@ -27,8 +26,10 @@ def find_flexibility(config: RunConfig) -> Flexibility | None:
     return None if joints is None else joints.by_joint(config.arm)
 
 
-def with_nominal_motors(config: RunConfig, nominal: Robot) -> Robot:
-    """Return a nominal robot with the motors of the flexible joints."""
+def with_nominal_flexibility(config: RunConfig, nominal: Robot) -> Robot:
+    """Return a rigid nominal robot with the masses of flexible links and the motors of flexible joints or links."""
+    if isinstance(config.plant, Rk4FlexibleLinksConfig):
+        return with_armature(stiffen_robot(nominal, config.plant.beams(config.arm)), config.plant.motors(config.arm))
     flexibility = find_flexibility(config)
     if flexibility is None:
         return nominal
@@ -94,7 +95,7 @@ def _refused(config: RunConfig, plant: TorquePlantConfig, flexibility: Flexibili
             "plant.friction acts only on the motors of flexible joints; take a list with 0 for the joints that are "
             "rigid"
         )
-    if type(config.environment) is WallConfig:
+    if config.wall is not None:
         problems.append("a wall is met by arms with rigid joints; take environment=push or environment=free")
     if config.loaded:
         problems.append("the payload cannot change on the way; take robot.payload.schedule=[]")
@@ -112,13 +113,6 @@ def _refused(config: RunConfig, plant: TorquePlantConfig, flexibility: Flexibili
 def is_flexible(config: RunConfig) -> bool:
     """Return True if joints or links are flexible; laws whose model contains the motors are not compiled."""
     return isinstance(config.plant, Rk4FlexibleLinksConfig) or find_flexibility(config) is not None
-
-
-def with_nominal_links(config: RunConfig, nominal: Robot) -> Robot:
-    """Return a rigid nominal robot with the masses of flexible links and motors."""
-    if not isinstance(config.plant, Rk4FlexibleLinksConfig):
-        return nominal
-    return with_armature(stiffen_robot(nominal, config.plant.beams(config.arm)), config.plant.motors(config.arm))
 
 
 def check_flexible_links(config: RunConfig) -> None:

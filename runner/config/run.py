@@ -11,9 +11,10 @@ from runner.config.limits import LimitsConfig, SweepConfig
 from runner.config.robot import RobotConfig
 from runner.config.settings import RunSettings
 from runner.config.timing import Timing
-from runner.controllers import ControllerConfig, Loop
+from runner.controllers import CONTROLLERS, ControllerConfig, Loop
 from runner.controllers.disturbance_observer import DisturbanceObserverConfig
 from runner.controllers.notch import NotchConfig
+from runner.environments.wall import WallConfig
 from runner.plants import PLANTS, PlantConfig
 from runner.plants.motor_limits import TorqueLimits
 from runner.plugins.features import Commands
@@ -24,7 +25,9 @@ from runner.robots.robot import Robot
 from runner.sensing import NOISES
 from runner.sensing.encoders import EncoderNoise
 from runner.sensing.endpoint import EndpointSensorConfig
+from runner.sensing.force_torque import ForceTorqueConfig
 from runner.trajectories import Trajectory
+from runner.trajectories.joint_motion import TipOfJoints
 
 # Fields that differ between configs of the same run, or that are new objects in each config.
 _OF_ONE_RUN = frozenset({"settings", "composed", "loaded", "timing"})
@@ -100,6 +103,21 @@ class RunConfig:
         return replace(self, settings=self.settings.model_copy(update={"seed": seed}), composed=composed)
 
     @property
+    def follows_joints(self) -> bool:
+        """True if the desired motion is defined for the joints."""
+        return isinstance(self.path, TipOfJoints)
+
+    def loops_for(self, robot: Robot) -> tuple[Loop, ...]:
+        """Return the control loops with a nominal robot; for the run's own arm they are `loops`.
+
+        Raises:
+            ConfigError: if the controller cannot be built for the robot.
+        """
+        if robot is self.arm:
+            return self.loops
+        return CONTROLLERS.build_for(self.controller, robot, self.follows_joints)
+
+    @property
     def cache_key(self) -> tuple[object, ...]:
         """All parts of a run except its seed: numbers, and objects that several configs share; see Memory."""
         parts = (part for name, part in vars(self).items() if name not in _OF_ONE_RUN)
@@ -132,6 +150,16 @@ class RunConfig:
     def compilable(self) -> bool:
         """True if compiled code supports all sensors of the run and the controllers' model."""
         return not self.interpreted and not self.endpoint_sensor.read_by
+
+    @property
+    def wall(self) -> WallConfig | None:
+        """Config of the built-in wall; None in another environment."""
+        return self.environment if type(self.environment) is WallConfig else None
+
+    @property
+    def force_torque_sensor(self) -> ForceTorqueConfig | None:
+        """Config of the built-in force/torque sensor; None for a sensor of another kind."""
+        return self.wrist_sensor if isinstance(self.wrist_sensor, ForceTorqueConfig) else None
 
     @property
     def has_contact(self) -> bool:

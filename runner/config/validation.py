@@ -20,17 +20,16 @@ from runner.config.cross_checks import (
     endpoint_ticks,
 )
 from runner.config.dependent_keys import check_dependent_keys
-from runner.config.desired_motion import check_path, check_points, check_repeats, start_posture
+from runner.config.desired_motion import check_path, check_points, check_repeats, find_start
 from runner.config.engine_check import check_engine
 from runner.config.flexibility import check_flexible_joints, check_flexible_links
 from runner.config.groups import read_groups
-from runner.config.input_shaper import shape
-from runner.config.limits import check_memory
+from runner.config.input_shaping import shape
 from runner.config.parsing import Parts, Problems, require
 from runner.config.robot import RobotConfig
 from runner.config.run import RunConfig
+from runner.config.run_cost import check_memory
 from runner.config.timing import Steps, Timing, count_steps, count_ticks
-from runner.config.torque_limits import TorqueLimitsConfig
 from runner.controllers import CONTROLLERS, ControllerConfig, Loop
 from runner.plants import PLANTS, PlantConfig, options_of
 from runner.plugins.registry import KindConfig
@@ -64,7 +63,7 @@ def validate(composed: Composed) -> RunConfig:
     outline = problems.recall(read_outline, robot, composed.config_dirs)
     noise = problems.recall(_by_joint, "noise", groups.get("noise"), outline)
     torque_sensor = problems.recall(_by_joint, "joint_torque_sensor", groups.get("joint_torque_sensor"), outline)
-    torque_limits = problems.recall(TorqueLimitsConfig.by_joint, groups.get("torque_limits"), outline)
+    torque_limits = problems.recall(RobotOutline.torque_limits, outline, groups.get("torque_limits"))
     problems.recall(_check_commands, plant, controller)
     steps = problems.recall(count_steps, outline, plant, controller)
     problems.report()
@@ -121,11 +120,8 @@ def _shape(groups: Parts, arm: Robot, path: Trajectory, loops: tuple[Loop, ...])
     shaper, controller, plant = groups.get("input_shaper"), groups["controller"], groups["plant"]
     if shaper is None:
         return path
-    if isinstance(path, TipOfJoints):
-        q = path.q_start
-    else:
-        q = start_posture(controller, arm, path.start, _ignores_base_rotation(arm, plant))
-    return shape(shaper, plant, arm, path, q, loops)
+    q_start = find_start(controller, arm, path, _ignores_base_rotation(arm, plant))
+    return shape(shaper, plant, arm, path, q_start, loops)
 
 
 _PARTS = {field.name for field in fields(RunConfig)}

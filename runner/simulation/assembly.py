@@ -6,16 +6,15 @@ from contextlib import ExitStack
 import numpy as np
 
 from runner.base.arrays import FloatArray
-from runner.config.desired_motion import check_feasible, start_posture
-from runner.config.flexibility import find_motor_side, is_flexible, with_nominal_links, with_nominal_motors
+from runner.config.desired_motion import check_feasible, find_start
+from runner.config.flexibility import find_motor_side, is_flexible, with_nominal_flexibility
 from runner.config.run import RunConfig
-from runner.controllers import CONTROLLERS, ControllerConfig, FollowsWithinReach, Loop, tell_limits
+from runner.controllers import Loop, tell_limits
 from runner.controllers.disturbance_observer import add_observers
 from runner.controllers.notch import add_notch
 from runner.environments import ENVIRONMENTS
 from runner.environments.external_wrench import Interaction
 from runner.environments.wall import Wall
-from runner.metrics.family import MetricContext
 from runner.plants import PLANTS, Plant, options_of
 from runner.plants.servo import JointServo
 from runner.plants.wrappers import PayloadChanges, WithTipContact
@@ -25,9 +24,8 @@ from runner.sensing.streams import MISMATCH
 from runner.simulation.closed_loop import ClosedLoop
 from runner.simulation.compiled.commands import Commands, compiled, find_commands
 from runner.simulation.compiled.loop_program import LoopProgram
-from runner.simulation.contact import add_wall, touches_by_tip
+from runner.simulation.wall import add_wall, touches_by_tip
 from runner.symbolic.structure import CannotCompileError
-from runner.trajectories.joint_motion import TipOfJoints
 
 
 def assemble(config: RunConfig, repetition: int = 0) -> ClosedLoop:
@@ -44,7 +42,7 @@ def assemble(config: RunConfig, repetition: int = 0) -> ClosedLoop:
             component rejects its config.
     """
     arm, path, timing = config.arm, config.path, config.timing
-    q_start = find_start(config)
+    q_start = start_of(config)
     nominal, loops = _build_nominal(config, repetition)
     environment = ENVIRONMENTS.build(config.environment)
     with ExitStack() as on_error:
@@ -92,7 +90,7 @@ def assemble_program(config: RunConfig, repetition: int = 0) -> tuple[LoopProgra
             loop_program.program(1)
     except CannotCompileError:
         return None  # the control loops have no compiled form either, and report the reason
-    return None if loop_program is None else (loop_program, find_start(config))
+    return None if loop_program is None else (loop_program, start_of(config))
 
 
 def describe_program(config: RunConfig, repetition: int = 0) -> LoopProgram | None:
@@ -122,31 +120,26 @@ def check_assembly(config: RunConfig) -> None:
         assemble(config).close()
 
 
-def find_start(config: RunConfig) -> FloatArray:
-    """Return the initial joint positions, shape (nq,), in rad."""
-    arm, path = config.arm, config.path
-    if isinstance(path, TipOfJoints):
-        q_start = path.q_start
-    else:
-        q_start = start_posture(config.controller, arm, path.start, config.ignore_base_rotation)
-    if CONTROLLERS.features(config.controller.kind).FOLLOWS_PATHS:
-        end = config.timing.ticks * config.timing.tick
-        check_feasible(config.controller, arm, path, q_start, config.robot.settling_band, end)
+def start_of(config: RunConfig) -> FloatArray:
+    """Return the initial joint positions, shape (nq,), in rad, after the check that the arm can follow the path.
+
+    Raises:
+        ConfigError: if it cannot, or if it cannot reach the start.
+    """
+    q_start = find_start(config.controller, config.arm, config.path, config.ignore_base_rotation)
+    check_feasible(config, q_start)
     return q_start
 
 
 def _build_nominal(config: RunConfig, repetition: int) -> tuple[Robot, tuple[Loop, ...]]:
     draw = np.random.default_rng([config.settings.seed, repetition, MISMATCH])
-    robot = with_nominal_links(config, with_nominal_motors(config, MISMATCHES.build(config.mismatch, config.arm, draw)))
+    robot = with_nominal_flexibility(config, MISMATCHES.build(config.mismatch, config.arm, draw))
     return robot, build_loops(config, robot)
 
 
 def build_loops(config: RunConfig, nominal: Robot) -> tuple[Loop, ...]:
     """Return the loops of the controllers with a nominal robot."""
-    loops = config.loops
-    if nominal is not config.arm:
-        loops = CONTROLLERS.build_for(config.controller, nominal, isinstance(config.path, TipOfJoints))
-    loops = tell_limits(loops, config.torque_limits.max)
+    loops = tell_limits(config.loops_for(nominal), config.torque_limits.max)
     if config.notch is not None:
         loops = add_notch(nominal, loops, config.notch.by_joint(config.arm), config.notch.width)
     observer, timing = config.disturbance_observer, config.timing
@@ -197,13 +190,3 @@ def _make_touched_plant(config: RunConfig, wall: Wall) -> Plant:
     plant = PLANTS.build(config.plant, config.arm, timing.step, 1)
     lead = 0.5 if PLANTS.features(config.plant.kind).moves_exactly(config.plant) else 0.0
     return WithTipContact(plant, config.arm.model, wall, timing.step, timing.steps_per_tick, lead)
-
-
-def metric_context(config: RunConfig) -> MetricContext:
-    """Return the data of a run that metrics need besides its trace."""
-    return MetricContext(config.path, config.robot.settling_band, config.timing.tick, reach_of(config.controller))
-
-
-def reach_of(controller: ControllerConfig) -> float | None:
-    """Return the distance up to which a mounted stage follows its target, in m; None without such a limit."""
-    return controller.reach if isinstance(controller, FollowsWithinReach) else None

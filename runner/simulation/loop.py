@@ -61,7 +61,7 @@ def simulate(
         joints = closed.trajectory.sample_joints(recorder.times)
         contact = None
         if closed.interaction is not None and wrist is not None:
-            contact = Contact(closed, closed.interaction, wrist)
+            contact = Contact(closed, wrist)
             recorder.contact = contact.signals
         # A diverging run ends as a failure, not as a warning.
         with track_ticks(recorder.clock, closed.ticks), np.errstate(over="ignore", invalid="ignore"):

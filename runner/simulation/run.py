@@ -20,20 +20,20 @@ from runner.base.errors import ConfigError
 from runner.base.trace import Trace
 from runner.caveats.monitor import Watch
 from runner.caveats.setting import setting_of
-from runner.config.limits import TICKS_AT_ONCE
 from runner.config.parsing import require
 from runner.config.run import RunConfig
+from runner.config.run_cost import TICKS_AT_ONCE
 from runner.config.validation import validate
 from runner.metrics import rounding
 from runner.metrics.plant_error import COMPARED, PlantError, compare, on_runge_kutta, reason_not_comparable
 from runner.metrics.rounding import RoundingGrowth, move_start
 from runner.plugins.discovery import has_users_parts
 from runner.sensing.streams import ROUNDING
-from runner.simulation.assembly import assemble, metric_context
+from runner.simulation.assembly import assemble
 from runner.simulation.batch import BatchResult, BatchSimulator, simulate_together
 from runner.simulation.by_ticks import simulate_assembled, simulate_by_ticks
 from runner.simulation.drawn_loops import with_drawn
-from runner.simulation.results import Collector, RunResult, measure_repetition
+from runner.simulation.results import Collector, RunResult, measure_repetition, metric_context
 
 MOST_THREADS = 4
 """Largest number of threads; more would wait for each other."""

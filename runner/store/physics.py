@@ -24,8 +24,8 @@ _TABLE = """
     calibration: __init__=calibration.__init__ gravity=calibration.gravity orientations procedure
         tool_centre_point=calibration.tool_centre_point tool_direction=calibration.tool_direction
         uncertainty=repeatability weighing
-    config: arms calibration cross_checks desired_motion flexibility groups input_shaper parsing robot=config.robot run
-        settings timing torque_limits validation
+    config: arms calibration checked_calibration cross_checks desired_motion flexibility groups input_shaper
+        input_shaping parsing robot=config.robot robot_files run settings timing torque_limits validation
     controllers: __init__=controllers.__init__ controller=controllers.controller
         disturbance_observer=controllers.disturbance_observer notch=controllers.notch torque_filter torque_law
     controllers/force: admittance admittance_filter force_reading=controllers.force_reading hybrid_force impedance
@@ -50,7 +50,7 @@ _TABLE = """
     sensing: __init__=sensing.__init__ encoders endpoint=sensing.endpoint force_torque joint_torque streams velocity
         wrench
     simulation: assembly batch by_ticks calibration=calibration_job closed_loop=loop.closed_loop contact=loop.contact
-        drawn_loops loop=simulation recorder results run=job sensors
+        drawn_loops loop=simulation recorder results run=job sensors wall=loop.wall
     simulation/compiled: commands law loop_program loops
     symbolic: algebra arm bullet_step code engine expression maths=controllers.maths program regressor structure
         tangent vectors=compiled.vectors

@@ -11,8 +11,8 @@ from numpy.typing import NDArray
 from runner import store
 from runner.base import progress
 from runner.base.errors import ConfigError
-from runner.config.limits import memory_of_run
 from runner.config.run import RunConfig
+from runner.config.run_cost import memory_of_run
 from runner.simulation.assembly import check_assembly
 from runner.store.identity import json_text
 from runner.store.names import Names, Texts

@@ -9,11 +9,11 @@ from typing import Any, Generic, TypeVar
 from runner import store
 from runner.base import progress
 from runner.base.ticks import counter
-from runner.config.calibration import CalibrationConfig, validate_calibration
+from runner.config.checked_calibration import CalibrationConfig, validate_calibration
 from runner.config.compose.compose import compose
 from runner.config.composed import CALIBRATION, Composed
-from runner.config.limits import check_cpu_time
 from runner.config.run import RunConfig
+from runner.config.run_cost import check_cpu_time
 from runner.config.validation import validate
 from runner.simulation.calibration import TICKS, simulate_calibration
 from runner.simulation.results import RunResult

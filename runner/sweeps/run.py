@@ -23,7 +23,8 @@ from runner.config.compose.composer import Composer
 from runner.config.compose.given_keys import given_keys
 from runner.config.composed import CALIBRATION
 from runner.config.dependent_keys import depends, idle_keys
-from runner.config.limits import SweepConfig, check_cpu_time, check_memory_together
+from runner.config.limits import SweepConfig
+from runner.config.run_cost import check_cpu_time, check_memory_together
 from runner.config.validation import validate
 from runner.plugins.discovery import has_users_parts, in_use
 from runner.store.finished import FINER

@@ -7,7 +7,8 @@ import pytest
 from runner.base.errors import ConfigError
 from runner.base.ticks import counter
 from runner.config.compose.compose import compose
-from runner.config.limits import LimitsConfig, check_cpu_time, check_memory_together, memory_of_run
+from runner.config.limits import LimitsConfig
+from runner.config.run_cost import check_cpu_time, check_memory_together, memory_of_run
 from runner.config.validation import validate
 from runner.simulation.tick_time import seconds_per_tick
 from runner.store import simulated_part
@@ -16,7 +17,7 @@ from runner.store import simulated_part
 @pytest.fixture(autouse=True)
 def memory(monkeypatch):
     """The same memory on every machine: half of it are 8 GB."""
-    monkeypatch.setattr("runner.config.limits.half_of_memory", lambda: 8e9)
+    monkeypatch.setattr("runner.config.run_cost.half_of_memory", lambda: 8e9)
 
 
 @pytest.mark.parametrize(
@@ -60,15 +61,15 @@ def test_null_allows_half_of_the_memory_and_any_time(checked_config, monkeypatch
     asked = ("robot=macro", "duration=30000", "limits.memory=null", "limits.cpu_hours=null")
     config = checked_config(*asked)
     needed = memory_of_run(config.arm, config.timing.ticks, 1, config.has_contact)
-    monkeypatch.setattr("runner.config.limits.half_of_memory", lambda: needed)
+    monkeypatch.setattr("runner.config.run_cost.half_of_memory", lambda: needed)
     check_cpu_time(checked_config(*asked).limits, 1e12, 1)
-    monkeypatch.setattr("runner.config.limits.half_of_memory", lambda: needed - 1.0)
+    monkeypatch.setattr("runner.config.run_cost.half_of_memory", lambda: needed - 1.0)
     with pytest.raises(ConfigError, match=r"would take about 1.51 GB; allowed: 1.51 GB, half of this machine's memory"):
         checked_config(*asked)
 
 
 def test_runs_at_a_time_share_half_of_the_memory(monkeypatch):
-    monkeypatch.setattr("runner.config.limits.half_of_memory", lambda: 6e9)
+    monkeypatch.setattr("runner.config.run_cost.half_of_memory", lambda: 6e9)
     check_memory_together(3e9, 2)
     with pytest.raises(ConfigError, match=r"workers: 3 runs at a time, .* 9 GB; allowed: 6 GB, .* in which 2 fit"):
         check_memory_together(3e9, 3)

@@ -5,7 +5,7 @@ import pytest
 
 from runner.base.errors import ConfigError
 from runner.calibration.weighing import even_postures
-from runner.config.calibration import validate_calibration
+from runner.config.checked_calibration import validate_calibration
 from runner.config.compose.compose import compose
 from runner.simulation.calibration import LEVEL, judge
 

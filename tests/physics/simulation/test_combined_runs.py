@@ -10,8 +10,9 @@ from support.covers import name_of, pairwise
 from support.printed import without_caveats, without_results
 
 from runner.metrics.summary import evaluate
-from runner.simulation.assembly import assemble, metric_context
+from runner.simulation.assembly import assemble
 from runner.simulation.loop import simulate
+from runner.simulation.results import metric_context
 from runner.simulation.sensors import make_encoders
 from runner.store import open_run
 

@@ -5,8 +5,9 @@ import pytest
 from support.physics import assert_order
 
 from runner.metrics.summary import evaluate
-from runner.simulation.assembly import assemble, metric_context
+from runner.simulation.assembly import assemble
 from runner.simulation.loop import simulate
+from runner.simulation.results import metric_context
 from runner.simulation.sensors import make_encoders
 from runner.sweeps.job import run
 

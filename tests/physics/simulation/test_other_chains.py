@@ -19,7 +19,8 @@ from runner.plugins.metric_units import units
 from runner.robots.description import find_urdf, read_urdf
 from runner.robots.model import RobotModel
 from runner.robots.robot import end_points
-from runner.simulation.assembly import assemble, metric_context
+from runner.simulation.assembly import assemble
+from runner.simulation.results import metric_context
 
 CHAINS = ["macro_mini_mini", "xarm7_mini"]
 PLANTS = ["default", "rk4"]

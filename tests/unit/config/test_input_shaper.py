@@ -6,6 +6,7 @@ from pydantic import ValidationError
 from runner.base.errors import ConfigError
 from runner.config.compose.compose import compose
 from runner.config.input_shaper import InputShaperConfig
+from runner.config.input_shaping import find_modes
 from runner.config.validation import validate
 from runner.robots.vibration import Mode
 
@@ -25,11 +26,11 @@ def _shaper(frequency, damping_ratio=None):
     ],
 )
 def test_modes_are_found_by_frequency_or_name(frequency, found):
-    assert _shaper(frequency).find(MODES) == found
+    assert find_modes(_shaper(frequency), MODES) == found
 
 
 def test_a_damping_ratio_that_is_given_counts_for_all():
-    assert _shaper(["mode_1", 7.5], 0.3).find(MODES) == [Mode(2.0, 0.3), Mode(7.5, 0.3)]
+    assert find_modes(_shaper(["mode_1", 7.5], 0.3), MODES) == [Mode(2.0, 0.3), Mode(7.5, 0.3)]
 
 
 @pytest.mark.parametrize("frequency", [0.0, -1.0, "mode_0", "first", True, [], [1.0] * 5])
@@ -43,7 +44,7 @@ def test_other_frequencies_are_refused(frequency):
 )
 def test_a_mode_that_the_plant_lacks_is_told(modes, problem):
     with pytest.raises(ConfigError, match=f"input_shaper.frequency: mode_3 .*{problem}"):
-        _shaper("mode_3").find(modes)
+        find_modes(_shaper("mode_3"), modes)
 
 
 @pytest.mark.parametrize(

@@ -20,36 +20,38 @@ def arms():
 
 def test_no_limit_leaves_the_efforts(arms):
     arm = arms["macro"]
-    np.testing.assert_array_equal(TorqueLimitsConfig(max=None, no_load_speed=None).by_joint(arm).max, arm.effort_limits)
+    np.testing.assert_array_equal(
+        arm.torque_limits(TorqueLimitsConfig(max=None, no_load_speed=None)).max, arm.effort_limits
+    )
 
 
 @pytest.mark.parametrize("value", [30.0, [10.0, 20.0, 30.0], [1e9, 20.0, 1e9]])
 def test_the_smaller_of_limit_and_effort_counts(arms, value):
     arm = arms["macro"]
     wanted = np.minimum(np.broadcast_to(value, 3), arm.effort_limits)
-    np.testing.assert_array_equal(TorqueLimitsConfig(max=value, no_load_speed=None).by_joint(arm).max, wanted)
+    np.testing.assert_array_equal(arm.torque_limits(TorqueLimitsConfig(max=value, no_load_speed=None)).max, wanted)
 
 
 def test_stages_have_limits_of_their_own(arms):
     arm = arms["combined"]
-    limits = TorqueLimitsConfig(max={"macro": 50.0, "mini": 2.0}, no_load_speed=None).by_joint(arm).max
+    limits = arm.torque_limits(TorqueLimitsConfig(max={"macro": 50.0, "mini": 2.0}, no_load_speed=None)).max
     assert (limits[:3] <= 50.0).all()
     assert (limits[3:] <= 2.0).all()
 
 
 def test_a_list_of_another_length_is_told(arms):
     with pytest.raises(ConfigError, match=r"torque_limits.max: 2 values for 3 joints"):
-        TorqueLimitsConfig(max=[1.0, 2.0], no_load_speed=None).by_joint(arms["macro"])
+        arms["macro"].torque_limits(TorqueLimitsConfig(max=[1.0, 2.0], no_load_speed=None))
 
 
 def test_a_no_load_speed_is_that_of_its_joint(arms):
     arm = arms["macro"]
-    assert not TorqueLimitsConfig(max=30.0, no_load_speed=None).by_joint(arm).depend_on_speed
-    limits = TorqueLimitsConfig(max=30.0, no_load_speed=[2.0, None, 4.0]).by_joint(arm)
+    assert not arm.torque_limits(TorqueLimitsConfig(max=30.0, no_load_speed=None)).depend_on_speed
+    limits = arm.torque_limits(TorqueLimitsConfig(max=30.0, no_load_speed=[2.0, None, 4.0]))
     assert limits.depend_on_speed
     assert limits.no_load_speed.tolist() == [2.0, np.inf, 4.0]
     staged = TorqueLimitsConfig(max={"macro": 50.0, "mini": 2.0}, no_load_speed={"macro": 3.0, "mini": None})
-    assert staged.by_joint(arms["combined"]).no_load_speed.tolist() == [3.0] * 3 + [np.inf] * 3
+    assert arms["combined"].torque_limits(staged).no_load_speed.tolist() == [3.0] * 3 + [np.inf] * 3
 
 
 def test_a_no_load_speed_without_a_torque_limit_is_refused(arms):
@@ -57,4 +59,4 @@ def test_a_no_load_speed_without_a_torque_limit_is_refused(arms):
         arms["macro"], stages=tuple(replace(each, effort_limits=np.full(3, np.inf)) for each in arms["macro"].stages)
     )
     with pytest.raises(ConfigError, match=r"no_load_speed: needs a torque limit; none for q1, q3. Set torque_limits"):
-        TorqueLimitsConfig(max=None, no_load_speed=[1.0, None, 1.0]).by_joint(arm)
+        arm.torque_limits(TorqueLimitsConfig(max=None, no_load_speed=[1.0, None, 1.0]))

@@ -13,7 +13,7 @@ OTHERS = {
     "base/former_names.py", "base/lazy_modules.py", "base/limits.py", "base/machine.py", "base/memory.py",
     "base/paths.py", "base/progress.py", "base/quantities.py", "base/sanitize.py", "base/tables.py",
     "base/ticks.py", "caveats", "cli", "config/compose", "config/composed.py", "config/dependent_keys.py",
-    "config/engine_check.py", "config/json_schema.py", "config/judgement.py", "config/limits.py",
+    "config/engine_check.py", "config/json_schema.py", "config/judgement.py", "config/limits.py", "config/run_cost.py",
     "controllers/stability.py", "doctor", "identification", "papers", "plants/agreement.py",
     "plants/servo_contact_stability.py", "plugins/discovery.py", "plugins/folder_code.py", "recordings",
     "reporting", "schema/model.py", "schema/units.py", "simulation/provenance.py", "simulation/tick_time.py",
