@@ -11,15 +11,15 @@ from pathlib import Path
 
 import numpy as np
 
+from runner.assembly.assemble import assemble
+from runner.assembly.validation import validate
 from runner.base.trace import Trace
 from runner.caveats.monitor import Watch, look_together
 from runner.caveats.setting import setting_of, signals_of
 from runner.config.compose.compose import compose
-from runner.config.validation import validate
 from runner.metrics.summary import measure
 from runner.plugins.metric_units import units_of
 from runner.sensing.encoders import encoder_errors
-from runner.simulation.assembly import assemble
 from runner.simulation.loop import simulate
 from runner.simulation.provenance import job_provenance
 from runner.simulation.results import metric_context, timing

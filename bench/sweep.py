@@ -16,10 +16,10 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from runner import store
+from runner.assembly.assemble import assemble
+from runner.assembly.validation import validate
 from runner.base.engines import quiet_environment
 from runner.config.compose.compose import compose
-from runner.config.validation import validate
-from runner.simulation.assembly import assemble
 from runner.simulation.loop import simulate
 from runner.simulation.run import simulate_run
 from runner.simulation.sensors import make_encoders

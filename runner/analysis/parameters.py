@@ -11,9 +11,9 @@ from typing import Any
 
 import numpy as np
 
+from runner.assembly.run_config import RunConfig
 from runner.base.dotted_keys import Place, leaves, put
 from runner.config.compose.units import unit_at
-from runner.config.run import RunConfig
 from runner.robots.mismatch import scale_model
 from runner.robots.model import RobotModel
 from runner.robots.robot import Robot, with_armature, with_models

@@ -9,22 +9,22 @@ import numpy as np
 from runner.analysis.parameters import GROUPS, Parameter, find_keys, find_links
 from runner.analysis.slopes import Scene, Slopes
 from runner.analysis.smooth_metrics import derivatives
+from runner.assembly.assemble import assemble_program
+from runner.assembly.compiled.loop_program import tangents
+from runner.assembly.flexibility import find_flexibility, is_flexible
+from runner.assembly.run_config import RunConfig
+from runner.assembly.validation import validate
 from runner.base.arrays import FloatArray
 from runner.base.errors import ConfigError, RunnerError
 from runner.base.trace import Trace
 from runner.config.compose.compose import compose
 from runner.config.composed import Composed
-from runner.config.flexibility import find_flexibility, is_flexible
 from runner.config.parsing import require
-from runner.config.run import RunConfig
-from runner.config.validation import validate
 from runner.metrics import summary
 from runner.metrics.summary import measure
 from runner.plants import PLANTS
 from runner.plants.rk4 import Rk4Config
-from runner.simulation.assembly import assemble_program
 from runner.simulation.batch import BatchResult, BatchSimulator, RunSpec
-from runner.simulation.compiled.loop_program import tangents
 from runner.simulation.results import metric_context
 from runner.store import Run, simulated_part
 from runner.symbolic.engine import evaluator

@@ -7,13 +7,13 @@ from dataclasses import dataclass, field, replace
 import numpy as np
 
 from runner.analysis.parameters import Key, Parameter
+from runner.assembly.assemble import describe_program, start_of
+from runner.assembly.compiled.law import structure_cache_key
+from runner.assembly.compiled.loop_program import LoopProgram, Setting
+from runner.assembly.run_config import RunConfig
 from runner.base.arrays import FloatArray
 from runner.base.errors import ConfigError, RunnerError
-from runner.config.run import RunConfig
-from runner.simulation.assembly import describe_program, start_of
 from runner.simulation.batch import RunSpec, draw_errors
-from runner.simulation.compiled.law import structure_cache_key
-from runner.simulation.compiled.loop_program import LoopProgram, Setting
 from runner.trajectories.trajectory import Trajectory
 
 _PART = 1.0 / 512.0  # step as a fraction of the parameter's value; the stencil has nine points

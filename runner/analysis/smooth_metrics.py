@@ -10,12 +10,12 @@ from dataclasses import replace
 import numpy as np
 from numpy.typing import NDArray
 
+from runner.assembly.compiled.loops import Rows
 from runner.base.arrays import FloatArray
 from runner.base.errors import RunnerError, unknown
 from runner.base.trace import Trace
 from runner.metrics.family import MetricContext
 from runner.metrics.positioning import STEADY_WINDOW
-from runner.simulation.compiled.loops import Rows
 from runner.trajectories.shaped import Shifted
 
 WITHOUT = {

@@ -7,14 +7,14 @@ import math
 
 import numpy as np
 
+from runner.assembly.run_config import RunConfig
 from runner.base.arrays import FloatArray
-from runner.config.run import RunConfig
+from runner.caveats.servo_contact_stability import ServoContact
 from runner.controllers import CommandsForce
 from runner.controllers.force.hybrid_force import HybridForceConfig
 from runner.controllers.stability import touch_radius
 from runner.plants import PLANTS, options_of
 from runner.plants.servo import ServoLaw
-from runner.plants.servo_contact_stability import ServoContact
 from runner.robots.task_space import mass_along, tip_mobility
 
 

@@ -12,11 +12,11 @@ from runner.base.arrays import FloatArray
 from runner.base.trace import Trace
 
 if TYPE_CHECKING:
+    from runner.assembly.run_config import RunConfig
+    from runner.caveats.servo_contact_stability import ServoContact
     from runner.caveats.time_constants import TimeConstant
     from runner.config.robot import RobotConfig
-    from runner.config.run import RunConfig
     from runner.controllers.stability import VelocityLoop
-    from runner.plants.servo_contact_stability import ServoContact
     from runner.robots.mismatch import MismatchConfig
     from runner.robots.model import RobotModel
     from runner.sensing.encoders import EncoderNoise
@@ -128,7 +128,7 @@ def _left_out_of(config: "RunConfig") -> Mapping[str, Sequence[str]]:
     Damping, friction and armature of a joint in the file count if the value of the joint in the run is zero. The
     mapping is empty for the kinematic plant.
     """
-    from runner.config.flexibility import find_flexibility
+    from runner.assembly.flexibility import find_flexibility
     from runner.plants.decoupled import TorquePlantConfig
     from runner.plants.friction_law import joint_friction
     from runner.robots.joint_dynamics import by_value

@@ -134,7 +134,7 @@ def _radius(setting: Setting) -> float | None:
     if setting.contact is None:
         return None
     # imported here, because the store imports the rules without rigid-body models
-    from runner.plants.servo_contact_stability import contact_radius
+    from runner.caveats.servo_contact_stability import contact_radius
 
     try:
         return round(contact_radius(setting.contact), _DIGITS_OF_RADIUS)

@@ -73,8 +73,8 @@ def _examine_logs(options: Namespace) -> int:
         raise RunnerError("--output: needs --robot ROBOT, whose joints the column map names.")
     if options.columns is not None and len(options.files) > 1:
         raise RunnerError("--columns: is for one log. Examine the logs one by one.")
+    from runner.assembly.validation import validate
     from runner.config.compose.compose import compose
-    from runner.config.validation import validate
     from runner.doctor.log import examine_log
     from runner.doctor.log_files import next_line, write_log_files
     from runner.doctor.log_words import log_lines

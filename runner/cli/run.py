@@ -184,7 +184,7 @@ def _simulate(line: _Line, overrides: Sequence[str], config_dirs: Sequence[Path]
 
         return print_sweep(sweep_typed(*_split(overrides), Composer(config_dirs, line.root), command))
     composed = compose(overrides, config_dirs, line.root)
-    from runner.config.validation import validate  # after the composition, so that errors are reported at once
+    from runner.assembly.validation import validate  # after the composition, so that errors are reported at once
 
     config = validate(composed)
     from runner.sweeps.job import RunJob, perform  # after validation, for the same reason

@@ -5,10 +5,10 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
+from runner.assembly.validation import validate
 from runner.base.atomic import write_atomically
 from runner.base.errors import RunnerError
 from runner.config.compose.compose import compose
-from runner.config.validation import validate
 from runner.doctor.log import LONGEST_GAP, examine_log
 from runner.doctor.log_files import MAP, MOTION, map_text
 from runner.store import Run

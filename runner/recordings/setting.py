@@ -7,11 +7,11 @@ from functools import cached_property
 import numpy as np
 import pinocchio as pin
 
+from runner.assembly.run_config import RunConfig
+from runner.assembly.validation import validate
 from runner.base.arrays import FloatArray
 from runner.base.errors import ConfigError, RunnerError
 from runner.base.trace import Trace
-from runner.config.run import RunConfig
-from runner.config.validation import validate
 from runner.metrics import effort, positioning, tracking
 from runner.metrics.family import MetricContext
 from runner.metrics.summary import measure, of_run

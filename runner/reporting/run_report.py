@@ -12,9 +12,9 @@ from runner.base.dotted_keys import dotted, leaves
 from runner.base.errors import ConfigError, RunnerError
 from runner.base.machine import read_machine
 from runner.base.quantities import above_rounding, number, quantity, with_powers
+from runner.caveats.rounding_growth import SENSITIVE, STEP
 from runner.caveats.versions import changes_since
 from runner.config.compose.compose import compose
-from runner.metrics.rounding import SENSITIVE, STEP
 from runner.reporting.document import Block, Code, Cover, Document, Notice, Provenance, Section, Table, Text
 from runner.reporting.figures import before_failure, cover, desired_motion, playback, torque_and_error
 from runner.reporting.markup import literal

@@ -7,11 +7,11 @@ from typing import Any
 
 import numpy as np
 
+from runner.assembly.calibration import CalibrationConfig
 from runner.base.arrays import FloatArray
 from runner.base.ticks import add_ticks
 from runner.calibration.procedure import Outcome
 from runner.calibration.uncertainty import consistency
-from runner.config.checked_calibration import CalibrationConfig
 from runner.simulation import provenance
 
 LEVEL = 0.99

@@ -2,10 +2,10 @@
 
 import numpy as np
 
+from runner.assembly.closed_loop import ClosedLoop
 from runner.base.arrays import FloatArray
 from runner.base.trace import ContactSignals
 from runner.sensing import WristSensor
-from runner.simulation.closed_loop import ClosedLoop
 
 _NOTHING = np.zeros(6)
 

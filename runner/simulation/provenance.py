@@ -9,16 +9,16 @@ from functools import cache, lru_cache
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
+from runner.assembly.dependent_keys import idle_keys
 from runner.base.engines import installed_versions
 from runner.base.machine import this_machine, today
 from runner.base.paths import package_dir
-from runner.config.dependent_keys import idle_keys
 from runner.plugins import discovery
 from runner.symbolic.engine import evaluator
 
 if TYPE_CHECKING:
+    from runner.assembly.run_config import RunConfig
     from runner.config.composed import Composed
-    from runner.config.run import RunConfig
 
 _LIBRARIES = ("arm-control-runner", "pybullet", "mujoco", "pin", "numpy", "scipy", "hydra-core")
 

@@ -9,18 +9,18 @@ from typing import Any
 
 import numpy as np
 
+from runner.assembly.run_config import RunConfig
 from runner.base.arrays import FloatArray
 from runner.base.errors import SimulationError
 from runner.base.trace import Failure, Trace
+from runner.caveats.integration_error import PlantError
 from runner.caveats.monitor import Watch
 from runner.caveats.plant_error import PlantStep
+from runner.caveats.rounding_growth import RoundingGrowth
 from runner.caveats.rule import Found
 from runner.caveats.setting import signals_of
-from runner.config.run import RunConfig
 from runner.controllers import ControllerConfig, FollowsWithinReach
 from runner.metrics.family import MetricContext
-from runner.metrics.plant_error import PlantError
-from runner.metrics.rounding import RoundingGrowth
 from runner.metrics.summary import Summary, evaluate, summarize_arrays
 from runner.simulation.provenance import job_provenance
 

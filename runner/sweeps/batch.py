@@ -5,9 +5,9 @@ from collections.abc import Callable, Iterable, Iterator, Sequence
 import numpy as np
 
 from runner import store
+from runner.assembly.run_config import RunConfig
 from runner.base.errors import StoreError
 from runner.base.machine import this_machine
-from runner.config.run import RunConfig
 from runner.config.settings import RunSettings
 from runner.metrics.summary import MOST_LISTED
 from runner.plugins.discovery import added_parts

@@ -7,14 +7,14 @@ from pathlib import Path
 from typing import Any, Generic, TypeVar
 
 from runner import store
+from runner.assembly.calibration import CalibrationConfig, validate_calibration
+from runner.assembly.run_config import RunConfig
+from runner.assembly.run_cost import check_cpu_time
+from runner.assembly.validation import validate
 from runner.base import progress
 from runner.base.ticks import counter
-from runner.config.checked_calibration import CalibrationConfig, validate_calibration
 from runner.config.compose.compose import compose
 from runner.config.composed import CALIBRATION, Composed
-from runner.config.run import RunConfig
-from runner.config.run_cost import check_cpu_time
-from runner.config.validation import validate
 from runner.simulation.calibration import TICKS, simulate_calibration
 from runner.simulation.results import RunResult
 from runner.simulation.run import simulate_run, threads_allowed

@@ -10,10 +10,10 @@ from typing import Any, cast
 import numpy as np
 
 from runner import store
+from runner.assembly.arms import build_robot, read_outline
 from runner.base import progress
 from runner.base.errors import ConfigError
 from runner.base.memory import Memory
-from runner.config.arms import build_robot, read_outline
 from runner.config.composed import Composed
 from runner.config.groups import read_groups
 from runner.config.limits import split_part

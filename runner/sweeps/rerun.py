@@ -1,8 +1,8 @@
 """Checked config of a stored run, to simulate it again."""
 
+from runner.assembly.run_config import RunConfig
+from runner.assembly.validation import validate
 from runner.base.errors import ConfigError, RunnerError
-from runner.config.run import RunConfig
-from runner.config.validation import validate
 from runner.store.identity import run_hash
 from runner.store.run import Run
 

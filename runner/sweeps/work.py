@@ -12,11 +12,11 @@ from pathlib import Path
 from typing import Any, TypeVar, cast
 
 from runner import store
+from runner.assembly.run_config import RunConfig
 from runner.base.engines import quiet_environment
 from runner.base.errors import DISK_FULL, RunnerError, StoreError, describe_write_error, user_place
 from runner.base.ticks import report_ticks
 from runner.config.composed import CALIBRATION, Composed
-from runner.config.run import RunConfig
 from runner.plugins.discovery import use_only
 from runner.simulation.provenance import job_provenance
 from runner.simulation.results import RunResult

@@ -14,6 +14,7 @@ from typing import Any, get_origin
 
 import yaml
 
+from runner.assembly.run_config import RunSettings
 from runner.base.paths import conf_dir
 from runner.calibration import CALIBRATIONS
 from runner.cli import commands
@@ -25,7 +26,6 @@ from runner.config.json_schema import meanings
 from runner.config.judgement import Bound, CaveatsConfig
 from runner.config.limits import SweepConfig
 from runner.config.robot import OneArmConfig, StageConfig
-from runner.config.run import RunSettings
 from runner.controllers.joint_space.joint_law import JointLawConfig
 from runner.papers.study.chapters import SHARED
 from runner.papers.study.code import public_functions

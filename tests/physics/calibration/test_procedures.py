@@ -3,9 +3,9 @@
 import numpy as np
 import pytest
 
+from runner.assembly.calibration import validate_calibration
 from runner.base.errors import ConfigError
 from runner.calibration.weighing import even_postures
-from runner.config.checked_calibration import validate_calibration
 from runner.config.compose.compose import compose
 from runner.simulation.calibration import LEVEL, judge
 

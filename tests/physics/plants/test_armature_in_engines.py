@@ -4,10 +4,10 @@ import numpy as np
 import pytest
 from support.arms import checked, model_of, urdf_of
 
+from runner.assembly.assemble import assemble
 from runner.base.errors import ConfigError
 from runner.plants.mujoco import Mujoco
 from runner.plants.rk4 import Rk4
-from runner.simulation.assembly import assemble
 from runner.simulation.loop import simulate
 from runner.simulation.sensors import make_encoders
 

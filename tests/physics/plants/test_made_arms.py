@@ -8,9 +8,9 @@ import numpy as np
 import pytest
 from support.made_arms import Writer, make_arm
 
+from runner.assembly.validation import validate
 from runner.base.engines import has_pybullet
 from runner.config.compose.compose import compose
-from runner.config.validation import validate
 from runner.plants.mujoco import Mujoco
 from runner.robots.description import read_urdf
 from runner.robots.model import RobotModel

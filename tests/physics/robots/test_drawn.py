@@ -5,11 +5,11 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
+from runner.assembly.assemble import describe_program, start_of
+from runner.assembly.drawn_loops import draw_commands
 from runner.robots.drawn import DrawnModel, by_run, each_run, over_runs
 from runner.robots.mismatch import MismatchConfig, build, build_drawn
 from runner.sensing.streams import MISMATCH
-from runner.simulation.assembly import describe_program, start_of
-from runner.simulation.drawn_loops import draw_commands
 from runner.simulation.run import simulate_repetition, simulate_run
 from runner.symbolic.engine import evaluator
 from tools.laws import LAWS

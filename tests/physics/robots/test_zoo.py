@@ -6,8 +6,8 @@ import numpy as np
 import pytest
 import yaml
 
+from runner.assembly.arms import build_robot, read_outline
 from runner.base.paths import robots_dir
-from runner.config.arms import build_robot, read_outline
 from runner.config.compose.compose import compose
 from runner.config.compose.files import group_options
 from runner.config.robot import OneArmConfig, StagedRobotConfig

@@ -6,8 +6,8 @@ import threading
 import numpy as np
 import pytest
 
+from runner.assembly.validation import validate
 from runner.config.compose.compose import compose
-from runner.config.validation import validate
 from runner.simulation import run as simulation
 from runner.simulation.batch import BatchSimulator
 from runner.simulation.run import MOST_THREADS, simulate_blocks

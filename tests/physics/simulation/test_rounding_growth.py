@@ -7,10 +7,10 @@ import pytest
 from scipy.linalg import expm
 from support.engines import ASKED
 
-from runner.metrics.rounding import SENSITIVE, move_start
+from runner.assembly.assemble import start_of
+from runner.caveats.rounding_growth import SENSITIVE, move_start
 from runner.sensing.streams import ROUNDING
 from runner.simulation import run as simulation
-from runner.simulation.assembly import start_of
 from runner.simulation.run import measure_rounding, simulate_blocks
 from runner.sweeps.job import run
 

@@ -2,8 +2,8 @@
 
 import pytest
 
+from runner.assembly.validation import validate
 from runner.config.compose.compose import compose
-from runner.config.validation import validate
 from runner.simulation.batch import BatchSimulator, simulate_together
 from runner.simulation.run import simulate_run
 from runner.store.writing import make_record
