@@ -2,7 +2,7 @@
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
-from typing import Any
+from typing import Any, cast
 
 import numpy as np
 
@@ -19,11 +19,11 @@ from runner.base.errors import ConfigError, RunnerError
 from runner.base.trace import Trace
 from runner.config.compose.compose import compose
 from runner.config.composed import Composed
+from runner.config.groups import GROUPS as MODELS
 from runner.config.parsing import require
 from runner.metrics import summary
 from runner.metrics.summary import measure
-from runner.plants import PLANTS
-from runner.plants.rk4 import Rk4Config
+from runner.plugins.registry import Kinds
 from runner.simulation.batch import BatchResult, BatchSimulator, RunSpec
 from runner.simulation.results import metric_context
 from runner.store import Run, simulated_part
@@ -125,10 +125,11 @@ def slopes_of(composed: Composed, groups: Sequence[str], repetition: int) -> Slo
 def by_runge_kutta(composed: Composed) -> RunConfig:
     """Return the checked config of a run; the Runge-Kutta plant replaces any other plant that takes torques."""
     config = validate(composed)
-    if config.plant.kind == "rk4" or is_flexible(config) or PLANTS.commands(config.plant.kind) != "torque":
+    if config.plant.kind == "rk4" or is_flexible(config) or not config.takes_torques:
         return config
     plant: Any = composed.resolved["plant"]
-    kept = {key: value for key, value in plant.items() if key in Rk4Config.model_fields}
+    known = cast(Kinds, MODELS["plant"]).config_model("rk4").model_fields
+    kept = {key: value for key, value in plant.items() if key in known}
     changed = {**composed.resolved, "plant": {**kept, "kind": "rk4", "step": None}}
     return validate(replace(composed, resolved=changed))
 

@@ -16,6 +16,7 @@ from runner.config.robot_files import find_arm, keyed_arms
 from runner.config.torque_limits import TorqueLimitsConfig
 from runner.plants.friction_law import joint_friction
 from runner.plants.motor_limits import TorqueLimits
+from runner.plugins.registry import KindConfig
 from runner.robots.description import mjcf_of, read_arm, read_urdf, with_payloads
 from runner.robots.elements import limit_of
 from runner.robots.inertials import Payload, armature_file, set_file
@@ -145,22 +146,22 @@ def read_outline(config: RobotConfig, config_dirs: Sequence[Path] = ()) -> Robot
     return _outlines[key]
 
 
-def build_robot(outline: RobotOutline, gravity: float, sensor: ForceTorqueConfig | None = None) -> Robot:
+def build_robot(outline: RobotOutline, gravity: float, sensor: KindConfig | None = None) -> Robot:
     """Return the robot of an outline; runs of the outline share it.
 
     Args:
         outline: The outline.
         gravity: Magnitude of gravity along -z of the base, in m/s^2.
-        sensor: Config of the force/torque sensor, whose mass loads the last arm's tip frame; None for no sensor.
+        sensor: Config of the wrist sensor; the mass of the built-in one loads the last arm's tip frame.
 
     Raises:
         ConfigError: for an arm that cannot be built, or a tool or payload on a frame that is not a link.
     """
-    return _build(outline, gravity, None if sensor is None else (sensor.mass, sensor.height))
+    return _build(outline, gravity, (sensor.mass, sensor.height) if isinstance(sensor, ForceTorqueConfig) else None)
 
 
 def build_loaded(
-    outline: RobotOutline, gravity: float, sensor: ForceTorqueConfig | None = None
+    outline: RobotOutline, gravity: float, sensor: KindConfig | None = None
 ) -> tuple[tuple[float, Robot], ...]:
     """Return the time of each change of payload, in s, and the robot from then on; see build_robot."""
     config = outline.config

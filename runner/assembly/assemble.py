@@ -146,7 +146,7 @@ def _make_plant(config: RunConfig, nominal: Robot, period: float, touched: Wall 
     """Return the plant, with joint servos if it takes torques and loops of a period command joint positions."""
     arm, timing = config.arm, config.timing
     ticks_per_command = round(period / timing.tick)
-    if PLANTS.commands(config.plant.kind) == "position":
+    if not config.takes_torques:
         return PLANTS.build(config.plant, arm, timing.tick, ticks_per_command)
     plant = _make_torque_plant(config) if touched is None else _make_touched_plant(config, touched)
     servo = options_of(config.plant).servo

@@ -22,7 +22,7 @@ def check_schedule(config: RunConfig) -> None:
     if not config.loaded:
         return
     key = "robot.payload.schedule: the payload cannot change on the way"
-    if PLANTS.commands(config.plant.kind) == "position":
+    if not config.takes_torques:
         fit = " or plant=".join(kind for kind in PLANTS.names() if PLANTS.commands(kind) == "torque")
         raise ConfigError(f"{key} of plant={config.plant.kind}, whose joints no mass moves; take plant={fit}, or []")
     if config.has_contact:

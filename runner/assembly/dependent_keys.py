@@ -18,7 +18,6 @@ from runner.controllers.force.hybrid_force import HybridForceConfig
 from runner.controllers.force.impedance import ImpedanceConfig
 from runner.controllers.macro_mini.macro_mini import MacroMiniConfig
 from runner.environments.push import PushConfig
-from runner.plants import PLANTS
 from runner.plants.decoupled import TorquePlantConfig
 from runner.plants.friction_law import joint_friction
 from runner.robots.mismatch import MISMATCHES
@@ -127,7 +126,7 @@ def _lacks_friction(config: RunConfig) -> bool:
 
 
 def _moves_ideally(config: RunConfig) -> str | None:
-    ideal = PLANTS.commands(config.plant.kind) == "position"
+    ideal = not config.takes_torques
     return f"plant={config.plant.kind} moves the joints ideally, whatever their mass" if ideal else None
 
 
@@ -270,7 +269,7 @@ def _meets_no_wall(config: RunConfig) -> str | None:
 
 
 def _checks_no_wall(config: RunConfig) -> str | None:
-    if PLANTS.commands(config.plant.kind) != "position":
+    if config.takes_torques:
         return f"plant={config.plant.kind} does not move the joints ideally"
     return _meets_no_wall(config)
 

@@ -152,6 +152,11 @@ class RunConfig:
         return not self.interpreted and not self.endpoint_sensor.read_by
 
     @property
+    def takes_torques(self) -> bool:
+        """True if the plant takes torques; False if its joints follow positions."""
+        return PLANTS.commands(self.plant.kind) == "torque"
+
+    @property
     def wall(self) -> WallConfig | None:
         """Config of the built-in wall; None in another environment."""
         return self.environment if type(self.environment) is WallConfig else None
@@ -172,7 +177,7 @@ class RunConfig:
         model = self.arm.model
         file = "robot.mjcf" if any(arm.mjcf for arm in self.robot.arms.values()) else "robot.urdf"
         found: list[str] = []
-        if PLANTS.commands(self.plant.kind) == "torque":
+        if self.takes_torques:
             found += _zero_limits(f"{file}: joint", "effort", model.effort_limits, "nothing pushes it", model)
         if self.commands == "position":
             found += _zero_limits(f"{file}: joint", "velocity", model.velocity_limits, "it stands still", model)

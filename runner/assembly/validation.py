@@ -36,7 +36,6 @@ from runner.plugins.registry import KindConfig
 from runner.robots.mismatch import MismatchConfig, check_links
 from runner.robots.robot import Robot, end_points
 from runner.sensing import values_by_joint
-from runner.sensing.force_torque import ForceTorqueConfig
 from runner.trajectories import TRAJECTORIES, HasStart, Trajectory
 from runner.trajectories.joint_motion import TipOfJoints
 
@@ -67,7 +66,7 @@ def validate(composed: Composed) -> RunConfig:
     problems.recall(_check_commands, plant, controller)
     steps = problems.recall(count_steps, outline, plant, controller)
     problems.report()
-    made_of = (outline, require(settings).gravity, *([sensor] if isinstance(sensor, ForceTorqueConfig) else []))
+    made_of = outline, require(settings).gravity, sensor
     arm = problems.recall(build_robot, *made_of)
     problems.recall(check_points, arm, groups.get("trajectory"))
     problems.recall(_check_mass, arm, plant)

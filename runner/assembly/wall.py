@@ -8,7 +8,7 @@ from runner.controllers import ChecksStability
 from runner.controllers.stability import check_wall
 from runner.environments import Environment
 from runner.environments.wall import Wall
-from runner.plants import PLANTS, Plant
+from runner.plants import Plant
 
 
 def touches_by_tip(config: RunConfig) -> bool:
@@ -28,7 +28,7 @@ def touches_by_tip(config: RunConfig) -> bool:
             "environment.kind: a wall found together with robot.armature, which PyBullet's contacts do not know; "
             "take plant=mujoco, robot.armature=0, or environment=free"
         )
-    return config.robot.tool is None and PLANTS.commands(config.plant.kind) == "torque"
+    return config.robot.tool is None and config.takes_torques
 
 
 def add_wall(wall: Wall, config: RunConfig, plant: Plant) -> Environment | None:
@@ -38,7 +38,7 @@ def add_wall(wall: Wall, config: RunConfig, plant: Plant) -> Environment | None:
         ConfigError: if the controller would be unstable on it with ideal joints, or the plant does not support
             friction.
     """
-    ideal = PLANTS.commands(config.plant.kind) == "position"
+    ideal = not config.takes_torques
     if ideal and isinstance(config.controller, ChecksStability) and config.controller.check_stability:
         late = math.ceil(config.timing.late[0] * config.timing.tick / config.controller.period - 1e-9)
         controller, values = config.controller, wall.config

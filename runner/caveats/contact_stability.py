@@ -29,7 +29,7 @@ def servo_contact(config: RunConfig, q_start: FloatArray) -> ServoContact | None
     servo, sensor = options_of(plant).servo, config.force_torque_sensor
     if wall is None or not isinstance(law, CommandsForce) or servo is None:
         return None
-    if PLANTS.commands(plant.kind) != "torque" or config.commands != "position" or len(config.arm.stages) > 1:
+    if not config.takes_torques or config.commands != "position" or len(config.arm.stages) > 1:
         return None
     if config.robot.tool is None or sensor is None:
         return None
