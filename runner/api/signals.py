@@ -93,7 +93,7 @@ def _check_metrics(run: store.Run, repetition: int, found: Mapping[str, float | 
     Raises:
         RunnerError: if one differs by more than rounding, or differs at all on the machine of the run.
     """
-    from runner.simulation.provenance import versions
+    from runner.assembly.versions import versions
 
     values = {name: float(run.values(name)[repetition]) for name in run.metrics}
     stored = {name: None if math.isnan(value) else value for name, value in values.items()}

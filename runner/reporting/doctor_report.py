@@ -2,6 +2,7 @@
 
 import numpy as np
 
+from runner.assembly.versions import versions
 from runner.base.arrays import FloatArray
 from runner.base.quantities import number
 from runner.doctor.examination import Examination
@@ -11,7 +12,6 @@ from runner.reporting.document import Document, Notice, Playback, Provenance, Se
 from runner.reporting.playback import joint_places, playback_bodies
 from runner.reporting.table import Column, numbers
 from runner.robots.model import RobotModel
-from runner.simulation.provenance import versions
 
 _SWING = 0.3  # rad, or share of the travel, by which each joint is shown
 _FRAMES = 24  # for each joint

@@ -16,6 +16,7 @@ from runner.assembly.assemble import assemble
 from runner.assembly.closed_loop import ClosedLoop
 from runner.assembly.run_config import RunConfig
 from runner.assembly.validation import validate
+from runner.assembly.versions import versions
 from runner.base.atomic import write_atomically
 from runner.base.errors import StoreError
 from runner.base.machine import this_machine
@@ -27,7 +28,6 @@ from runner.papers.study.grids import Grids
 from runner.plants import Plant
 from runner.plants.rk4 import Rk4
 from runner.robots.model import RobotModel
-from runner.simulation import provenance
 from runner.simulation.loop import simulate
 from runner.simulation.run import simulate_repetition
 from runner.simulation.sensors import make_encoders
@@ -71,7 +71,7 @@ def measure(outputs: Path) -> None:
         return
     record = {
         "machine": this_machine().record(),
-        "versions": provenance.versions(),
+        "versions": versions(),
         "runs": hashes,
         "cases": {case: _solved(steps) for case, steps in cases.items()},
     }
