@@ -27,7 +27,7 @@ from runner.simulation.sensors import make_encoders
 from runner.store import Outcome
 from runner.store.seal import JsonTexts
 from runner.store.shards import ShardRow, shard_name, write_shard
-from runner.store.writing import record_texts
+from runner.sweeps.records import record_texts
 
 _RUNS, _TIMES = 256, 30
 _OVERRIDES = ("robot=macro", "plant=rk4", "trajectory=quintic", "noise=thesis", "torque_limits=thesis")

@@ -76,7 +76,7 @@ def _simulated(run: store.Run, repetition: int) -> Signals:
     from runner.metrics.summary import evaluate
     from runner.simulation.results import metric_context
     from runner.simulation.run import simulate_repetition
-    from runner.store.writing import trace_table
+    from runner.store.parquet import trace_table
     from runner.sweeps.rerun import checked_config
 
     config = checked_config(run, f"repetition {repetition} of {run.hash}")

@@ -1,4 +1,4 @@
-"""Kinds of stored results: folder, files and command of each, the name `latest`, and a function that opens a folder."""
+"""Kinds of stored results: folder, files and command of each, and functions that open one and prepare the outputs."""
 
 import json
 import sys
@@ -8,6 +8,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Literal
 
+from runner.base.atomic import refuse_links, write_atomically
 from runner.base.bounded_json import decode_json
 from runner.base.errors import RunnerError, StoreError
 from runner.config.compose.files import outputs_dir
@@ -166,3 +167,19 @@ def _notes(outputs: Path, kinds: Sequence[Kind]) -> Iterator[tuple[int, Path]]:
 def _needed(kinds: Sequence[Kind]) -> str:
     named = ", ".join(f"a {kind} (`{KINDS[kind].command}` prints it)" for kind in kinds)
     return f"Allowed: the folder of {named}, or the word {WORD}."
+
+
+def prepare(outputs: Path) -> None:
+    """Check that results can be stored in a folder, before anything is computed.
+
+    Raises:
+        StoreError: if the folder cannot be created or written to, or a folder in it is a link.
+    """
+    for name in (*(kind.folder for kind in KINDS.values()), *FILES):
+        refuse_links(outputs, outputs / name)
+    probe = outputs / "runs" / ".writable"
+    try:
+        write_atomically(probe, b"")
+    except StoreError as error:
+        raise StoreError(f"{error}; choose a folder that can be written to, as in outputs=FOLDER") from error
+    probe.unlink(missing_ok=True)

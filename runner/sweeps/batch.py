@@ -17,8 +17,8 @@ from runner.simulation.provenance import command, job_provenance
 from runner.simulation.results import Collector
 from runner.store.seal import JsonTexts
 from runner.store.shards import ShardRow
-from runner.store.writing import record_texts
 from runner.sweeps.deadline import TimeLimitError, deadline
+from runner.sweeps.records import record_texts
 from runner.sweeps.writer import ResultWriter, Rules, without_trace
 
 Named = tuple[str, Collector]

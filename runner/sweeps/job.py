@@ -90,7 +90,9 @@ class RunJob(Job[RunResult, store.Run]):
 
     def write(self, outputs: Path, result: RunResult) -> store.Run:
         """Store the run."""
-        return store.write_run(outputs, self.name, result)
+        from runner.sweeps.records import write_run
+
+        return write_run(outputs, self.name, result)
 
 
 class CalibrationJob(Job[dict[str, Any], store.Calibration]):

@@ -21,10 +21,10 @@ from runner.plugins.discovery import use_only
 from runner.simulation.provenance import job_provenance
 from runner.simulation.results import RunResult
 from runner.store.shards import find_shards, outcome, read_outcomes, write_shard
-from runner.store.writing import cut_short_record
 from runner.sweeps.batch import make_together
 from runner.sweeps.deadline import TimeLimitError, deadline
 from runner.sweeps.job import CalibrationJob, RunJob, check_job
+from runner.sweeps.records import cut_short_record
 from runner.sweeps.writer import ResultWriter, Rules, without_trace, write_failure, write_log
 
 Made = TypeVar("Made")

@@ -23,7 +23,7 @@ from runner.config.compose.files import group_options, groups
 from runner.config.composed import Composed
 from runner.simulation.run import simulate_run
 from runner.store import run_hash
-from runner.store.writing import make_record
+from runner.sweeps.records import make_record
 from tools.fuzz.files import experiment
 from tools.fuzz.grammar import keys_of, mutated, override
 

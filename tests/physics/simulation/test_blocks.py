@@ -11,7 +11,7 @@ from runner.config.compose.compose import compose
 from runner.simulation import run as simulation
 from runner.simulation.batch import BatchSimulator
 from runner.simulation.run import MOST_THREADS, simulate_blocks
-from runner.store.writing import make_record
+from runner.sweeps.records import make_record
 from runner.symbolic.engine import evaluator
 
 pytestmark = pytest.mark.skipif(not evaluator(), reason="runs are compiled as a whole by llvmlite")

@@ -104,7 +104,6 @@ SHARED = {
     "store/physics": "unit/store/test_physics_modules.py",
     "store/run": "contract/store/test_runs.py",
     "store/sweep": "contract/store/test_sweep_store.py",
-    "store/writing": "contract/store/test_store.py",
     "symbolic/arm": "physics/symbolic/test_algebra.py",
     "symbolic/program": "physics/symbolic/test_code.py",
     "symbolic/vectors": "physics/symbolic/test_algebra.py",

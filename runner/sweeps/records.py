@@ -1,4 +1,4 @@
-"""Writer of a run: its config, its first trace and, last, its metrics.
+"""Records of runs, and the writer of a run: its config, its first trace and, last, its metrics.
 
 A run with metrics is complete.
 """
@@ -8,35 +8,14 @@ from dataclasses import asdict
 from pathlib import Path
 from typing import Any
 
-import numpy as np
 import yaml
 
-from runner.base.atomic import refuse_links, write_atomically
-from runner.base.errors import StoreError
-from runner.base.trace import Trace
 from runner.caveats.rule import Found
 from runner.simulation.results import RunResult
 from runner.statistics.spec import bounds_of, judge
-from runner.store.kinds import FILES, KINDS
-from runner.store.parquet import OF_NUMBERS, VALUES_FILE, encode_parquet, plain_column, values_parquet
+from runner.store.parquet import OF_NUMBERS, VALUES_FILE, encode_parquet, trace_table, values_parquet
 from runner.store.run import Run
 from runner.store.seal import JsonTexts, encode_finite, write_job
-
-
-def prepare(outputs: Path) -> None:
-    """Check that results can be stored in a folder, before anything is computed.
-
-    Raises:
-        StoreError: if the folder cannot be created or written to, or a folder in it is a link.
-    """
-    for name in (*(kind.folder for kind in KINDS.values()), *FILES):
-        refuse_links(outputs, outputs / name)
-    probe = outputs / "runs" / ".writable"
-    try:
-        write_atomically(probe, b"")
-    except StoreError as error:
-        raise StoreError(f"{error}; choose a folder that can be written to, as in outputs=FOLDER") from error
-    probe.unlink(missing_ok=True)
 
 
 def write_run(outputs: Path, name: str, result: RunResult) -> Run:
@@ -124,40 +103,3 @@ def cut_short_record(reason: str, repetitions: int, provenance: Mapping[str, Any
         "timing": {},
         "provenance": dict(provenance),
     }
-
-
-def trace_table(trace: Trace) -> Any:
-    """Return a trace as an Arrow table: one column per signal, its unit in the metadata of the column."""
-    import pyarrow
-
-    joints = range(trace.q.shape[1])
-    columns: list[tuple[str, str, np.ndarray]] = [("t", "s", trace.t)]
-    places = trace.joint_units
-    speeds = [f"{unit}/s" for unit in places]
-    torques = ["N" if unit == "m" else "N m" for unit in places]
-    for name, units, values in (("q", places, trace.q), ("dq", speeds, trace.dq), ("tau", torques, trace.tau)):
-        columns += [(f"{name}{joint + 1}", units[joint], values[:, joint]) for joint in joints]
-    if trace.q_command is not None:
-        columns += [(f"q{joint + 1}_command", places[joint], trace.q_command[:, joint]) for joint in joints]
-    if trace.contact is not None:
-        for name in ("external", "felt", "reading", "load", "reaction"):
-            values = getattr(trace.contact, name)
-            columns += [(f"{name}_force_{axis}", "N", values[:, index]) for index, axis in enumerate("xyz")]
-            columns += [(f"{name}_moment_{axis}", "N m", values[:, 3 + index]) for index, axis in enumerate("xyz")]
-    tip_signals = (
-        ("tip", "m", trace.tip),
-        ("error", "m", trace.error),
-        ("desired", "m", trace.desired[:, 0]),
-        ("desired_velocity", "m/s", trace.desired[:, 1]),
-        ("desired_acceleration", "m/s^2", trace.desired[:, 2]),
-    )
-    for name, unit, values in tip_signals:
-        columns += [(f"{name}_{axis}", unit, values[:, index]) for index, axis in enumerate("xyz")]
-    for index, stage in enumerate(trace.stage_names[:-1]):
-        stage_trace = trace.at_stage(index)
-        for name, values in ((f"{stage}_tip", stage_trace.tip), (f"{stage}_error", stage_trace.error)):
-            columns += [(f"{name}_{axis}", "m", values[:, number]) for number, axis in enumerate("xyz")]
-    schema = pyarrow.schema(
-        [pyarrow.field(name, pyarrow.float64(), metadata={"unit": unit}) for name, unit, _ in columns]
-    )
-    return pyarrow.Table.from_arrays([plain_column(values) for *_, values in columns], schema=schema)
