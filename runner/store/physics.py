@@ -20,8 +20,8 @@ from runner.store import syntax
 
 # Folders and their modules. A module's id follows "="; without "=" it is the module's name.
 _TABLE = """
-    assembly: arms assemble=assembly calibration=checked_calibration closed_loop=loop.closed_loop cross_checks
-        desired_motion drawn_loops flexibility input_shaping run_config=run timing validation wall=loop.wall
+    assembly: arms assemble=assembly closed_loop=loop.closed_loop cross_checks desired_motion drawn_loops flexibility
+        input_shaping run_config=run timing validation wall=loop.wall
     assembly/compiled: commands law loop_program loops
     base: portable trace
     calibration: __init__=calibration.__init__ gravity=calibration.gravity orientations procedure
@@ -51,8 +51,8 @@ _TABLE = """
     schema: values
     sensing: __init__=sensing.__init__ encoders endpoint=sensing.endpoint force_torque joint_torque streams velocity
         wrench
-    simulation: batch by_ticks calibration=calibration_job contact=loop.contact loop=simulation recorder results run=job
-        sensors
+    simulation: batch by_ticks calibration=calibration_job calibration_config=checked_calibration contact=loop.contact
+        loop=simulation recorder results run=job sensors
     symbolic: algebra arm bullet_step code engine expression maths=controllers.maths program regressor structure
         tangent vectors=compiled.vectors
     trajectories: __init__=trajectories.__init__ circle from_file geometry goal joint_motion=trajectories.joint_motion

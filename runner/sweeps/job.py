@@ -7,7 +7,6 @@ from pathlib import Path
 from typing import Any, Generic, TypeVar
 
 from runner import store
-from runner.assembly.calibration import CalibrationConfig, validate_calibration
 from runner.assembly.run_config import RunConfig
 from runner.assembly.run_cost import check_cpu_time
 from runner.assembly.validation import validate
@@ -16,6 +15,7 @@ from runner.base.ticks import counter
 from runner.config.compose.compose import compose
 from runner.config.composed import CALIBRATION, Composed
 from runner.simulation.calibration import TICKS, simulate_calibration
+from runner.simulation.calibration_config import CalibrationConfig, validate_calibration
 from runner.simulation.results import RunResult
 from runner.simulation.run import simulate_run, threads_allowed
 from runner.simulation.tick_time import seconds_per_tick

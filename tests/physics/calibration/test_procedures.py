@@ -3,11 +3,11 @@
 import numpy as np
 import pytest
 
-from runner.assembly.calibration import validate_calibration
 from runner.base.errors import ConfigError
 from runner.calibration.weighing import even_postures
 from runner.config.compose.compose import compose
 from runner.simulation.calibration import LEVEL, judge
+from runner.simulation.calibration_config import validate_calibration
 
 KINDS = ("tool_centre_point", "tool_direction", "gravity")
 EXACT = ("calibration.repeatability=0", "wrist_sensor.noise=[0,0,0,0,0,0]", "wrist_sensor.resolution=[0,0,0,0,0,0]")

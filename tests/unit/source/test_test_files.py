@@ -41,7 +41,7 @@ SHARED = {
     "config/input_shaper": "unit/assembly/test_input_shaping.py",
     "config/robot_files": "contract/config/test_units_of_keys.py",
     "config/limits": "contract/assembly/test_run_cost.py",
-    "assembly/calibration": "contract/calibration/test_calibration_job.py",
+    "simulation/calibration_config": "contract/calibration/test_calibration_job.py",
     "assembly/wall": "physics/caveats/test_servo_contact_stability.py",
     "config/compose/files": "contract/config/test_options.py",
     "config/compose/composition_errors": "contract/config/test_compose.py",
