@@ -14,6 +14,7 @@ from runner.assembly.compiled.loop_program import tangents
 from runner.assembly.flexibility import find_flexibility, is_flexible
 from runner.assembly.run_config import RunConfig
 from runner.assembly.validation import validate
+from runner.assembly.versions import has_compiler
 from runner.base.arrays import FloatArray
 from runner.base.errors import ConfigError, RunnerError
 from runner.base.trace import Trace
@@ -27,7 +28,6 @@ from runner.plugins.registry import Kinds
 from runner.simulation.batch import BatchResult, BatchSimulator, RunSpec
 from runner.simulation.results import metric_context
 from runner.store import Run, simulated_part
-from runner.symbolic.engine import evaluator
 
 
 @dataclass(frozen=True)
@@ -165,7 +165,7 @@ def scene_of(config: RunConfig, repetition: int) -> Scene:
 
 def _why_not(config: RunConfig) -> str:
     """Return the reason why a run has no derivatives; empty if no reason is found."""
-    if not evaluator():
+    if not has_compiler():
         return "llvmlite, which compiles runs, is not installed; `pip install llvmlite`"
     if config.commands != "torque":
         return f"controller {config.controller.kind} commands joint positions; only laws that give torques are compiled"

@@ -27,3 +27,8 @@ def engine_versions(plant: str) -> dict[str, str]:
     used = _ENGINES.get(plant, ("mujoco", "pybullet"))
     own = bullet_versions() if plant == "bullet" else {}
     return installed_versions((*used, "pin")) | evaluator() | own
+
+
+def has_compiler() -> bool:
+    """Return True if the compiler of laws and runs is installed."""
+    return bool(evaluator())

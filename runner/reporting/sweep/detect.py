@@ -7,13 +7,13 @@ from dataclasses import dataclass
 import numpy as np
 
 from runner.base.quantities import quantity
-from runner.config.judgement import Bound
 from runner.reporting.answers import Answer
 from runner.reporting.metric_titles import title
 from runner.reporting.sweep.question import find_answers
 from runner.reporting.sweep.spec import find_failing
 from runner.reporting.sweep.subject import Subject
 from runner.reporting.table import Table, numbers
+from runner.schema.bound import Bound
 from runner.statistics.conclusion import ALPHA, larger_median
 
 PILOT = 8

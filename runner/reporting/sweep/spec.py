@@ -8,13 +8,13 @@ import numpy as np
 from numpy.typing import NDArray
 
 from runner.base.arrays import FloatArray
-from runner.config.judgement import Bound
 from runner.reporting.charts.figure import spaced_indices
 from runner.reporting.document import Block, Curves, Map, Maps, Notice, Panel, Section, Series, Table, Text
 from runner.reporting.markup import literal
 from runner.reporting.spec_blocks import RULE, bound_text, late_text, probability
 from runner.reporting.sweep import maps
 from runner.reporting.sweep.subject import Subject, key_label, spans_decades
+from runner.schema.bound import Bound
 from runner.statistics.spec import bounds_of, merge_histories, settings, within
 from runner.store import Sweep
 from runner.store.axes import Axis

@@ -5,7 +5,7 @@ import pytest
 from runner.assembly.validation import validate
 from runner.base.errors import ConfigError
 from runner.config.compose.compose import compose
-from runner.config.judgement import Bound
+from runner.schema.bound import Bound
 from runner.store import run_hash
 
 
