@@ -19,7 +19,6 @@ if TYPE_CHECKING:
     from runner.controllers.stability import VelocityLoop
     from runner.robots.mismatch import MismatchConfig
     from runner.robots.model import RobotModel
-    from runner.sensing.encoders import EncoderNoise
 
 IDEAL = "kinematic"
 """Plant with ideal joint motion; forces have no effect on it."""
@@ -44,7 +43,8 @@ class Setting:
         ticks_per_torque: Number of ticks for which the torque of each joint is constant, shape (nq,).
         tracked: True if the tip must follow a path, instead of only reaching a goal.
         complies: True if the controller must comply with the external wrench.
-        noise: Noise of the joint measurement; None for encoders of another kind.
+        noise: Largest noise or resolution of a measured joint position, in rad; None if velocities are not exact, or
+            for encoders of another kind.
         mismatch: Factors on the nominal model of the controllers; None for a mismatch of another kind.
         mass: Mass of all moving links, in kg.
         contact: Contact of a servo-driven arm with a wall under an admittance law; None without one.
@@ -68,7 +68,7 @@ class Setting:
     ticks_per_torque: NDArray[np.intp]
     tracked: bool
     complies: bool
-    noise: "EncoderNoise | None"
+    noise: float | None
     mismatch: "MismatchConfig | None"
     mass: float
     contact: "ServoContact | None"
@@ -111,7 +111,7 @@ def setting_of(config: "RunConfig", q_start: FloatArray | None = None) -> Settin
         ticks_per_torque=ticks,
         tracked=config.path.tracked,
         complies=config.environment.kind != "free" and any(loop.uses_wrench for loop in config.loops),
-        noise=config.encoder_noise,
+        noise=_noise_beside_exact(config),
         mismatch=config.model_error,
         mass=mass,
         contact=None if q_start is None else servo_contact(config, q_start),
@@ -120,6 +120,14 @@ def setting_of(config: "RunConfig", q_start: FloatArray | None = None) -> Settin
         slowest=slowest_part(config, q_start),
         left_out=_left_out_of(config),
     )
+
+
+def _noise_beside_exact(config: "RunConfig") -> float | None:
+    noise = config.encoder_noise
+    if noise is None or noise.velocity != "exact":
+        return None
+    drawn = 0.0 if noise.distribution == "none" else max(noise.position.tolist())
+    return float(max(drawn, *noise.resolution.tolist()))
 
 
 def _left_out_of(config: "RunConfig") -> Mapping[str, Sequence[str]]:

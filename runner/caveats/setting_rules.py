@@ -47,14 +47,7 @@ NO_EFFORT_LIMIT = SettingRule("no_effort_limit", _lifted, _tell_lifted)
 
 
 def _noise_beside_exact(setting: Setting) -> float | None:
-    """Return the largest noise or resolution of a measured joint position, in rad, if velocities are exact."""
-    noise = setting.noise
-    if noise is None or noise.velocity != "exact":
-        return None
-    if not setting.torques:  # laws that command positions do not use velocities
-        return None
-    drawn = 0.0 if noise.distribution == "none" else max(noise.position.tolist())
-    return float(max(drawn, *noise.resolution.tolist()))
+    return setting.noise if setting.torques else None  # laws that command positions do not use velocities
 
 
 def _tell_noise(value: float, setting: Setting) -> str:

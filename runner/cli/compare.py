@@ -225,7 +225,7 @@ def _compare_recording(given: Sequence[Path], recordings: Sequence[Path], option
 
 def _replay(recording: Path, options: Namespace) -> None:
     """Make the run of a log, and compare it with the log."""
-    from runner.api.replay import replay
+    from runner.cli.replay import replay
     from runner.config.compose.files import outputs_dir
     from runner.recordings.compare import compare_recording
 

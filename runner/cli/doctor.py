@@ -107,10 +107,11 @@ def _examine_robot(options: Namespace, path: Path) -> int:
         print(one_line(str(finding)))
     folder, formats = options.output, options.format or ["config"]
     if folder is not None and "html" in formats:
+        from runner.assembly.versions import versions
         from runner.reporting.doctor_report import doctor_document
         from runner.reporting.render import write_report
 
-        write_report(doctor_document(found), folder, ("html",))
+        write_report(doctor_document(found, versions()), folder, ("html",))
     if folder is not None and "config" in formats:
         from runner.doctor.config_folder import write_folder  # imports the models of all config groups
 

@@ -1,8 +1,9 @@
 """Report on the inspection of a robot file, with a drawing of the robot."""
 
+from collections.abc import Mapping
+
 import numpy as np
 
-from runner.assembly.versions import versions
 from runner.base.arrays import FloatArray
 from runner.base.quantities import number
 from runner.doctor.examination import Examination
@@ -18,8 +19,13 @@ _FRAMES = 24  # for each joint
 _SECONDS = 1.5  # for each joint
 
 
-def doctor_document(found: Examination) -> Document:
-    """Return the report on an examination."""
+def doctor_document(found: Examination, versions: Mapping[str, str]) -> Document:
+    """Return the report on an examination.
+
+    Args:
+        found: The examination.
+        versions: Versions of the libraries that made it, by name.
+    """
     counts = {grade: sum(f.grade == grade for f in found.findings) for grade in GRADES}
     if found.arm is not None:
         verdict = "fits" if found.arm.has_mass else "fits, with ideal joint position commands"
@@ -30,7 +36,7 @@ def doctor_document(found: Examination) -> Document:
         verdict = "is refused"
         notice = Notice("failure", "No model", "The robot cannot be taken until what is refused below is corrected.")
         sections = [Section("The robot", (notice,)), Section("Findings", (_findings(found),))]
-    rows = [("file", found.source.name), *versions().items()]
+    rows = [("file", found.source.name), *versions.items()]
     return Document(
         title=f"Robot {found.name}",
         subtitle=f"{found.source.name}, tip frame: {found.tip}",
