@@ -17,7 +17,7 @@ from typing import TYPE_CHECKING, Any
 from runner.base.errors import RunnerError
 from runner.base.sanitize import one_line
 from runner.cli.arguments import Parser, Stored, config_folder, seconds
-from runner.store.kinds import kind_of, open_stored
+from runner.store.kinds import kind_of
 
 if TYPE_CHECKING:
     from runner.recordings.compare import RecordingComparison
@@ -87,6 +87,8 @@ def _compare(options: Namespace) -> None:
     from runner.store.sweep import Sweep
     from runner.sweeps.measurements import check_metrics, limit_sweep
     from runner.sweeps.question import keep_question
+
+    from runner.store.opening import open_stored
 
     everything, things = options.all or options.json, list(map(open_stored, options.folders))
     runs = [thing for thing in things if isinstance(thing, Run)]

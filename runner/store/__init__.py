@@ -7,7 +7,8 @@ if TYPE_CHECKING:
     from runner.store.calibration import Calibration, find_calibration, open_calibration, write_calibration
     from runner.store.finished import Finished, find_outcome, find_run
     from runner.store.identity import run_hash, run_hashes
-    from runner.store.kinds import open_stored, prepare
+    from runner.store.kinds import prepare
+    from runner.store.opening import open_stored
     from runner.store.run import Run, judge_run, open_run
     from runner.store.seal import DamagedError, SchemaError, simulated_part
     from runner.store.shards import Outcome
@@ -41,7 +42,8 @@ __all__ = [
 _MODULES = {
     "calibration": "Calibration find_calibration open_calibration write_calibration",
     "finished": "Finished find_outcome find_run",
-    "kinds": "open_stored prepare",
+    "kinds": "prepare",
+    "opening": "open_stored",
     "identity": "run_hash run_hashes",
     "run": "Run judge_run open_run",
     "seal": "DamagedError SchemaError simulated_part",

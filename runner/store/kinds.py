@@ -1,4 +1,4 @@
-"""Kinds of stored results: folder, files and command of each, and functions that open one and prepare the outputs."""
+"""Kinds of stored results: folder, files and command of each, the name `latest`, and the outputs folder."""
 
 import json
 import sys
@@ -6,17 +6,11 @@ import time
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
-from typing import TYPE_CHECKING, Literal
+from typing import Literal
 
-from runner.base.atomic import refuse_links, write_atomically
 from runner.base.bounded_json import decode_json
 from runner.base.errors import RunnerError, StoreError
 from runner.config.compose.files import outputs_dir
-
-if TYPE_CHECKING:
-    from runner.store.calibration import Calibration
-    from runner.store.run import Run
-    from runner.store.sweep import Sweep
 
 Kind = Literal["run", "sweep", "tuning", "challenge", "calibration", "identification", "report"]
 WORD = "latest"
@@ -126,23 +120,6 @@ def report_place(outputs: Path, name: str) -> Path:
     return folder
 
 
-def open_stored(folder: Path) -> "Run | Sweep | Calibration":
-    """Open a folder; a tuning is opened as the sweep of its trials, a challenge as that of its runs.
-
-    Raises:
-        StoreError: if the folder is none of these, or its run is unfinished.
-        DamagedError: if the result is damaged.
-    """
-    from runner.store.calibration import open_calibration
-    from runner.store.run import open_run
-    from runner.store.sweep import open_sweep
-
-    kind = kind_of(folder)
-    if kind in ("sweep", "tuning", "challenge"):
-        return open_sweep(folder)
-    return open_calibration(folder) if kind == "calibration" else open_run(folder)
-
-
 def _newest(outputs: Path, kinds: Sequence[Kind]) -> Path:
     found = max(_notes(outputs, kinds), default=None)
     if found is None:
@@ -175,6 +152,8 @@ def prepare(outputs: Path) -> None:
     Raises:
         StoreError: if the folder cannot be created or written to, or a folder in it is a link.
     """
+    from runner.base.atomic import refuse_links, write_atomically  # not needed to find a result
+
     for name in (*(kind.folder for kind in KINDS.values()), *FILES):
         refuse_links(outputs, outputs / name)
     probe = outputs / "runs" / ".writable"

@@ -18,7 +18,7 @@ from runner.assembly.run_config import RunSettings
 from runner.base.paths import conf_dir
 from runner.calibration import CALIBRATIONS
 from runner.cli import commands
-from runner.cli.main import COMMON, build_parser
+from runner.cli.parser import COMMON, build_parser
 from runner.config.calibration import CalibrationSettings
 from runner.config.compose.files import group_options, place_in
 from runner.config.groups import GROUPS
