@@ -15,7 +15,7 @@ from runner.assembly.run_config import RunConfig
 from runner.assembly.validation import validate
 from runner.base.engine_output import quiet_stderr
 from runner.config.compose.compose import compose
-from runner.plants.bullet import Bullet
+from runner.plants.bullet_engine import Bullet
 from runner.simulation.batch import BatchResult, BatchSimulator
 from runner.simulation.loop import ClosedLoop, simulate
 from runner.simulation.sensors import make_encoders

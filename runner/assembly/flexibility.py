@@ -7,7 +7,8 @@ from runner.base.errors import ConfigError
 from runner.controllers.joint_space.motor_pd import MotorPdConfig
 from runner.plants import Plant, options_of
 from runner.plants.decoupled import TorquePlantConfig, find_motion
-from runner.plants.flexible_joints import Flexibility, FlexibleJoints, MotorSide, links_of
+from runner.plants.flexibility import Flexibility
+from runner.plants.flexible_joints import FlexibleJoints, MotorSide, links_of
 from runner.plants.plant import unwrapped
 from runner.plants.rk4_flexible_links import Rk4FlexibleLinksConfig
 from runner.robots.robot import Robot, with_armature

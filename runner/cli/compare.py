@@ -83,12 +83,11 @@ def _compare(options: Namespace) -> None:
     from runner.reporting.comparison.text import level_lines, run_lines, sweep_lines
     from runner.reporting.sweep.subject import main_metrics
     from runner.store.axes import find_axis
+    from runner.store.opening import open_stored
     from runner.store.run import Run
     from runner.store.sweep import Sweep
     from runner.sweeps.measurements import check_metrics, limit_sweep
     from runner.sweeps.question import keep_question
-
-    from runner.store.opening import open_stored
 
     everything, things = options.all or options.json, list(map(open_stored, options.folders))
     runs = [thing for thing in things if isinstance(thing, Run)]

@@ -40,7 +40,7 @@ def in_mujoco(urdf, q, dq):
 def in_bullet(urdf, q, dq):
     import pybullet
 
-    from runner.plants.bullet import Bullet
+    from runner.plants.bullet_engine import Bullet
 
     model = RobotModel(urdf, "tip")
     plant = Bullet(urdf, model, 1e-3, 1)

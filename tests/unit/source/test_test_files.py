@@ -82,6 +82,8 @@ SHARED = {
     "sensing/endpoint": "physics/simulation/test_endpoint_sensing.py",
     "schema/bound": "contract/config/test_judgement.py",
     "schema/units": "contract/config/test_units_of_keys.py",
+    "plants/bullet_engine": "physics/plants/test_bullet.py",
+    "plants/flexibility": "physics/plants/test_flexible_joints.py",
     "plants/bullet_links": "physics/plants/test_bullet_step.py",
     "plants/compiled_bullet": "physics/plants/test_bullet_step.py",
     "plants/stepped_bullet": "physics/plants/test_bullet_step.py",
