@@ -2,11 +2,11 @@
 
 from dataclasses import dataclass
 
+from runner.assembly.assemble import assemble
+from runner.assembly.closed_loop import ClosedLoop
+from runner.assembly.run_config import RunConfig
+from runner.assembly.validation import validate
 from runner.config.compose.compose import compose
-from runner.config.run import RunConfig
-from runner.config.validation import validate
-from runner.simulation.assembly import assemble
-from runner.simulation.closed_loop import ClosedLoop
 from tools.laws import ARM_LAWS, LAWS
 
 _SCENE = ("trajectory=quintic", "noise=thesis", "torque_limits=thesis")

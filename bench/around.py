@@ -11,23 +11,23 @@ from pathlib import Path
 
 import numpy as np
 
+from runner.assembly.assemble import assemble
+from runner.assembly.validation import validate
 from runner.base.trace import Trace
 from runner.caveats.monitor import Watch, look_together
 from runner.caveats.setting import setting_of, signals_of
 from runner.config.compose.compose import compose
-from runner.config.validation import validate
 from runner.metrics.summary import measure
 from runner.plugins.metric_units import units_of
 from runner.sensing.encoders import encoder_errors
-from runner.simulation.assembly import assemble, metric_context
 from runner.simulation.loop import simulate
 from runner.simulation.provenance import job_provenance
-from runner.simulation.results import timing
+from runner.simulation.results import metric_context, timing
 from runner.simulation.sensors import make_encoders
 from runner.store import Outcome
 from runner.store.seal import JsonTexts
 from runner.store.shards import ShardRow, shard_name, write_shard
-from runner.store.writing import record_texts
+from runner.sweeps.records import record_texts
 
 _RUNS, _TIMES = 256, 30
 _OVERRIDES = ("robot=macro", "plant=rk4", "trajectory=quintic", "noise=thesis", "torque_limits=thesis")

@@ -4,8 +4,8 @@ import numpy as np
 
 from bench.arms import Arm, assembled
 from bench.turns import Block
-from runner.simulation.assembly import assemble_program
-from runner.simulation.compiled.loop_program import run_all
+from runner.assembly.assemble import assemble_program
+from runner.assembly.compiled.loop_program import run_all
 from runner.simulation.sensors import make_encoders
 
 SIZES = (1, 40, 1000)

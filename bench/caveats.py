@@ -7,13 +7,14 @@ only ever slows one.
 import time
 from collections.abc import Callable
 
+from runner.assembly.assemble import assemble
+from runner.assembly.validation import validate
 from runner.caveats.monitor import Watch
 from runner.caveats.setting import setting_of, signals_of
 from runner.config.compose.compose import compose
-from runner.config.validation import validate
 from runner.metrics.summary import evaluate
-from runner.simulation.assembly import assemble, metric_context
 from runner.simulation.loop import simulate
+from runner.simulation.results import metric_context
 from runner.simulation.sensors import make_encoders, make_wrist_sensor
 
 _BLOCKS, _CALLS = 30, 20

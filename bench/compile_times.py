@@ -7,7 +7,7 @@ from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 
 from bench.arms import ARMS, Arm, assembled
-from runner.simulation.assembly import assemble_program
+from runner.assembly.assemble import assemble_program
 from runner.symbolic import program
 
 

@@ -8,8 +8,8 @@ import numpy as np
 
 from runner.analysis import GROUPS
 from runner.analysis.sensitivity import slopes_of
+from runner.assembly.compiled.loop_program import run_all, tangents
 from runner.config.compose.compose import compose
-from runner.simulation.compiled.loop_program import run_all, tangents
 
 RUNS = {
     "macro": ("robot=macro", "plant=rk4", "trajectory=quintic", "noise=thesis"),

@@ -18,8 +18,8 @@ import pinocchio as pin
 import yaml
 from numpy.typing import NDArray
 
+from runner.assembly.validation import validate
 from runner.config.compose.compose import compose
-from runner.config.validation import validate
 from runner.identification.examination import examine_logs, read_question
 from runner.identification.fit import fit_logs
 from runner.identification.identify import identify

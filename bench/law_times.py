@@ -12,10 +12,10 @@ from typing import cast
 
 import numpy as np
 
+from runner.assembly.assemble import assemble
+from runner.assembly.validation import validate
 from runner.config.compose.compose import compose
-from runner.config.validation import validate
 from runner.controllers import Controller
-from runner.simulation.assembly import assemble
 from runner.simulation.loop import simulate
 from runner.simulation.sensors import make_sensors
 

@@ -12,8 +12,8 @@ from bench.arms import ARMS, Arm, assembled
 from bench.tick import whole_run
 from bench.tip_loop import FloatArray
 from bench.turns import Block, kept_of, measure, ratio
+from runner.assembly.closed_loop import ClosedLoop
 from runner.plants.mujoco import Mujoco
-from runner.simulation.closed_loop import ClosedLoop
 from runner.simulation.loop import simulate
 from runner.simulation.sensors import make_encoders
 

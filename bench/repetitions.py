@@ -7,9 +7,9 @@ drawn in each repetition (mismatch=sampled) cost at most half of the time withou
 import resource
 import time
 
+from runner.assembly.run_cost import memory_of_run
+from runner.assembly.validation import validate
 from runner.config.compose.compose import compose
-from runner.config.limits import memory_of_run
-from runner.config.validation import validate
 from runner.simulation.run import simulate_blocks
 
 _FEW, _MANY = 1_000, 100_000

@@ -16,13 +16,14 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from runner import store
+from runner.assembly.assemble import assemble
+from runner.assembly.validation import validate
 from runner.base.engines import quiet_environment
 from runner.config.compose.compose import compose
-from runner.config.validation import validate
-from runner.simulation.assembly import assemble
 from runner.simulation.loop import simulate
 from runner.simulation.run import simulate_run
 from runner.simulation.sensors import make_encoders
+from runner.sweeps.records import write_run
 
 _SHORT = ("robot=macro", "noise=thesis", "duration=1")
 _SHORTEST = ("robot=macro", "plant=rk4", "noise=thesis", "duration=0.05", "sweep.trace=never")
@@ -100,7 +101,7 @@ def _saving(overrides: tuple[str, ...]) -> float:
     composed = compose(overrides)
     result = simulate_run(validate(composed))
     with tempfile.TemporaryDirectory() as folder:
-        return _cpu_time(lambda: store.write_run(Path(folder), "run", result))
+        return _cpu_time(lambda: write_run(Path(folder), "run", result))
 
 
 def _cpu_time(work: Callable[[], object], times: int = 100) -> float:

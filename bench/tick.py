@@ -10,12 +10,12 @@ from collections.abc import Callable, Iterable
 from statistics import median
 
 from bench.turns import ROUNDS, Block, kept_of, measure, ratio
+from runner.assembly.assemble import assemble
+from runner.assembly.run_config import RunConfig
+from runner.assembly.validation import validate
 from runner.base.engine_output import quiet_stderr
 from runner.config.compose.compose import compose
-from runner.config.run import RunConfig
-from runner.config.validation import validate
-from runner.plants.bullet import Bullet
-from runner.simulation.assembly import assemble
+from runner.plants.bullet_engine import Bullet
 from runner.simulation.batch import BatchResult, BatchSimulator
 from runner.simulation.loop import ClosedLoop, simulate
 from runner.simulation.sensors import make_encoders

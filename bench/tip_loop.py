@@ -5,10 +5,10 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from runner.config.run import RunConfig
+from runner.assembly.closed_loop import ClosedLoop
+from runner.assembly.run_config import RunConfig
 from runner.controllers.operational_space.operational_space import OperationalSpaceConfig
 from runner.controllers.operational_space.whole_body import WholeBodyConfig
-from runner.simulation.closed_loop import ClosedLoop
 from runner.simulation.sensors import make_encoders
 
 FloatArray = NDArray[np.float64]

@@ -8,10 +8,10 @@ from unittest.mock import patch
 
 import numpy as np
 
+from runner.assembly.compiled import commands
+from runner.assembly.validation import validate
 from runner.base.trace import Trace
 from runner.config.compose.compose import compose
-from runner.config.validation import validate
-from runner.simulation.compiled import commands
 from runner.simulation.run import simulate_repetition
 from tools.laws import ARM_LAWS
 

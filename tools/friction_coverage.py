@@ -14,8 +14,8 @@ import numpy as np
 import pinocchio as pin
 from numpy.typing import NDArray
 
+from runner.assembly.validation import validate
 from runner.config.compose.compose import compose
-from runner.config.validation import validate
 from runner.recordings.columns_map import Signal
 from runner.recordings.compare import friction_of
 from runner.recordings.recording import Recording

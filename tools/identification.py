@@ -14,8 +14,8 @@ from functools import cache
 import numpy as np
 from numpy.typing import NDArray
 
+from runner.assembly.validation import validate
 from runner.config.compose.compose import compose
-from runner.config.validation import validate
 from runner.identification.checks import find_flags, second_method
 from runner.identification.fit import Fit, fit_logs
 from runner.identification.friction_kinds import TERMS, FrictionKind

@@ -13,10 +13,10 @@ import numpy as np
 import pinocchio as pin
 from numpy.typing import NDArray
 
+from runner.assembly.validation import validate
 from runner.base.errors import RunnerError
 from runner.base.tables import Table
 from runner.config.compose.compose import compose
-from runner.config.validation import validate
 from runner.doctor.log import LogExamination, judge
 from runner.recordings.columns_map import ColumnsMap
 from runner.robots.model import RobotModel

@@ -11,15 +11,13 @@ from typing import Any
 
 import numpy as np
 
+from runner.assembly.run_config import RunConfig
 from runner.base.dotted_keys import Place, leaves, put
 from runner.config.compose.units import unit_at
-from runner.config.run import RunConfig
-from runner.controllers import CONTROLLERS
 from runner.robots.mismatch import scale_model
 from runner.robots.model import RobotModel
 from runner.robots.robot import Robot, with_armature, with_models
 from runner.store import simulated_part
-from runner.trajectories.joint_motion import TipOfJoints
 
 # Key segments of each group; the first known segment of a key determines its group.
 _WORDS: Mapping[str, Sequence[str]] = {
@@ -163,5 +161,4 @@ def _with_armature(config: RunConfig, joint: int, value: float) -> RunConfig:
 
 def _with_robot(config: RunConfig, changed: Robot) -> RunConfig:
     """Return a config with another arm in the plant and in the controllers."""
-    loops = CONTROLLERS.build_for(config.controller, changed, isinstance(config.path, TipOfJoints))
-    return replace(config, arm=changed, loops=loops)
+    return replace(config, arm=changed, loops=config.loops_for(changed))

@@ -2,31 +2,32 @@
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
-from typing import Any
+from typing import Any, cast
 
 import numpy as np
 
 from runner.analysis.parameters import GROUPS, Parameter, find_keys, find_links
 from runner.analysis.slopes import Scene, Slopes
 from runner.analysis.smooth_metrics import derivatives
+from runner.assembly.assemble import assemble_program
+from runner.assembly.compiled.loop_program import tangents
+from runner.assembly.flexibility import find_flexibility, is_flexible
+from runner.assembly.run_config import RunConfig
+from runner.assembly.validation import validate
+from runner.assembly.versions import has_compiler
 from runner.base.arrays import FloatArray
 from runner.base.errors import ConfigError, RunnerError
 from runner.base.trace import Trace
 from runner.config.compose.compose import compose
 from runner.config.composed import Composed
-from runner.config.flexibility import find_flexibility, is_flexible
+from runner.config.groups import GROUPS as MODELS
 from runner.config.parsing import require
-from runner.config.run import RunConfig
-from runner.config.validation import validate
 from runner.metrics import summary
 from runner.metrics.summary import measure
-from runner.plants import PLANTS
-from runner.plants.rk4 import Rk4Config
-from runner.simulation.assembly import assemble_program, metric_context
+from runner.plugins.registry import Kinds
 from runner.simulation.batch import BatchResult, BatchSimulator, RunSpec
-from runner.simulation.compiled.loop_program import tangents
+from runner.simulation.results import metric_context
 from runner.store import Run, simulated_part
-from runner.symbolic.engine import evaluator
 
 
 @dataclass(frozen=True)
@@ -124,10 +125,11 @@ def slopes_of(composed: Composed, groups: Sequence[str], repetition: int) -> Slo
 def by_runge_kutta(composed: Composed) -> RunConfig:
     """Return the checked config of a run; the Runge-Kutta plant replaces any other plant that takes torques."""
     config = validate(composed)
-    if config.plant.kind == "rk4" or is_flexible(config) or PLANTS.commands(config.plant.kind) != "torque":
+    if config.plant.kind == "rk4" or is_flexible(config) or not config.takes_torques:
         return config
     plant: Any = composed.resolved["plant"]
-    kept = {key: value for key, value in plant.items() if key in Rk4Config.model_fields}
+    known = cast(Kinds, MODELS["plant"]).config_model("rk4").model_fields
+    kept = {key: value for key, value in plant.items() if key in known}
     changed = {**composed.resolved, "plant": {**kept, "kind": "rk4", "step": None}}
     return validate(replace(composed, resolved=changed))
 
@@ -163,7 +165,7 @@ def scene_of(config: RunConfig, repetition: int) -> Scene:
 
 def _why_not(config: RunConfig) -> str:
     """Return the reason why a run has no derivatives; empty if no reason is found."""
-    if not evaluator():
+    if not has_compiler():
         return "llvmlite, which compiles runs, is not installed; `pip install llvmlite`"
     if config.commands != "torque":
         return f"controller {config.controller.kind} commands joint positions; only laws that give torques are compiled"

@@ -7,14 +7,13 @@ from dataclasses import dataclass, field, replace
 import numpy as np
 
 from runner.analysis.parameters import Key, Parameter
+from runner.assembly.assemble import describe_program, start_of
+from runner.assembly.compiled.law import structure_cache_key
+from runner.assembly.compiled.loop_program import LoopProgram, Setting
+from runner.assembly.run_config import RunConfig
 from runner.base.arrays import FloatArray
 from runner.base.errors import ConfigError, RunnerError
-from runner.config.run import RunConfig
-from runner.simulation.assembly import describe_program, find_start
 from runner.simulation.batch import RunSpec, draw_errors
-from runner.simulation.compiled.law import structure_cache_key
-from runner.simulation.compiled.loop_program import LoopProgram, Setting
-from runner.trajectories.trajectory import Trajectory
 
 _PART = 1.0 / 512.0  # step as a fraction of the parameter's value; the stencil has nine points
 _EIGHTH = (4.0 / 5.0, -1.0 / 5.0, 4.0 / 105.0, -1.0 / 280.0)  # exact for polynomials up to degree 8
@@ -65,9 +64,9 @@ class Scene(RunSpec):
             ConfigError: if the other run cannot start.
         """
         times: FloatArray = np.arange(self.rows, dtype=np.float64) * self.loop_program.tick
-        if not np.array_equal(_motion(self.config.path, times), _motion(config.path, times)):
+        if not np.array_equal(_motion(self.config, times), _motion(config, times)):
             raise NoDerivativeError("it changes the desired motion, which is held")
-        if not np.array_equal(find_start(config), self.q_start):
+        if not np.array_equal(start_of(config), self.q_start):
             raise NoDerivativeError("it changes the start, which is held")
         return not np.array_equal(_vector(self.setting), _vector(self._changed(config).setting))
 
@@ -114,9 +113,10 @@ def _fixed(loop_program: LoopProgram) -> list[str]:
     return [structure_cache_key(loop.law) for loop in loop_program.commands.loops]
 
 
-def _motion(path: Trajectory, times: FloatArray) -> FloatArray:
-    joints = path.sample_joints(times)
-    return np.concatenate([np.ravel(part) for part in (path.sample(times), joints) if part is not None])
+def _motion(config: RunConfig, times: FloatArray) -> FloatArray:
+    """Return the desired motion of the tip at some times, and that of the joints if there is one, as one array."""
+    tip, joints = config.path.sample(times), config.path.sample_joints(times)
+    return np.concatenate([np.ravel(part) for part in (tip, joints) if part is not None])
 
 
 def _vector(setting: Setting) -> FloatArray:

@@ -5,18 +5,16 @@ such sample.
 """
 
 from collections.abc import Callable, Mapping
-from dataclasses import replace
 
 import numpy as np
 from numpy.typing import NDArray
 
+from runner.assembly.compiled.loops import Rows
 from runner.base.arrays import FloatArray
 from runner.base.errors import RunnerError, unknown
 from runner.base.trace import Trace
 from runner.metrics.family import MetricContext
 from runner.metrics.positioning import STEADY_WINDOW
-from runner.simulation.compiled.loops import Rows
-from runner.trajectories.shaped import Shifted
 
 WITHOUT = {
     "settling_time": "it jumps from one tick to another, and stays in between",
@@ -37,7 +35,7 @@ def derivatives(trace: Trace, change: Rows, context: MetricContext) -> dict[str,
     """
     found = _of_tip(trace, change.end_points[-1], context) | _of_joints(trace, change, context.period)
     for index, stage in enumerate(trace.stage_names[:-1]):
-        stage_context = replace(context, trajectory=Shifted(context.trajectory, trace.offsets[index]))
+        stage_context = context.at_stage(trace.offsets[index])
         of_stage = _of_tip(trace.at_stage(index), change.end_points[index], stage_context)
         found |= {f"{stage}_{name}": values for name, values in of_stage.items()}
     return found

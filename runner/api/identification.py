@@ -74,8 +74,8 @@ def identify(
         RunnerError: if a log cannot be read, is too short, contradicts the robot or itself, or has torques without
             gravity.
     """
+    from runner.assembly.validation import validate
     from runner.config.compose.compose import compose
-    from runner.config.validation import validate
     from runner.identification.examination import examine_logs, read_question
     from runner.identification.friction_kinds import KINDS
     from runner.identification.identify import identify as fit

@@ -3,7 +3,6 @@
 Every repetition except the first is simulated again.
 """
 
-import math
 import re
 import warnings
 from collections.abc import Mapping, Sequence
@@ -14,7 +13,6 @@ from matplotlib.figure import Figure
 
 from runner import store
 from runner.base.errors import RunnerError, unknown
-from runner.base.machine import equal_up_to_rounding, read_machine, this_machine
 from runner.base.quantities import label_with_unit
 from runner.reporting.charts.scales import curves_in_readable_units
 from runner.reporting.charts.static import as_figure, as_png, draw
@@ -73,42 +71,14 @@ def signals_of(run: store.Run, repetition: int) -> Signals:
 
 
 def _simulated(run: store.Run, repetition: int) -> Signals:
-    from runner.metrics.summary import evaluate
-    from runner.simulation.assembly import metric_context
-    from runner.simulation.run import simulate_repetition
-    from runner.store.writing import trace_table
-    from runner.sweeps.rerun import checked_config
+    from runner.store.parquet import trace_table
+    from runner.sweeps.rerun import simulate_again
 
-    config = checked_config(run, f"repetition {repetition} of {run.hash}")
-    trace = simulate_repetition(config, repetition)
-    found = evaluate(trace, metric_context(config), [])
-    _check_metrics(run, repetition, found)
+    trace, warning = simulate_again(run, repetition)
+    if warning:
+        warnings.warn(warning, RuntimeWarning, stacklevel=5)  # at the caller of Run.trace
     table = trace_table(trace)
     return Signals(table.to_pandas(), units_of(table))
-
-
-def _check_metrics(run: store.Run, repetition: int, found: Mapping[str, float | None]) -> None:
-    """Check that the metrics of a repetition that was simulated again are the stored metrics.
-
-    Raises:
-        RunnerError: if one differs by more than rounding, or differs at all on the machine of the run.
-    """
-    from runner.simulation.provenance import versions
-
-    values = {name: float(run.values(name)[repetition]) for name in run.metrics}
-    stored = {name: None if math.isnan(value) else value for name, value in values.items()}
-    moved = [name for name, value in stored.items() if found.get(name) != value]
-    here = (read_machine(run.provenance["machine"]), run.provenance["versions"]) == (this_machine(), versions())
-    again = f"repetition {repetition} of {run.hash}, simulated again, differs"
-    for name in moved:
-        if here or not equal_up_to_rounding(stored[name], found.get(name)):
-            cause = "its machine and library versions are these, so it is not reproducible" if here else (
-                "another machine or library version rounds in another way"
-            )  # fmt: skip
-            raise RunnerError(f"{again}: {name} is {found.get(name)}, stored is {stored[name]}; {cause}")
-    if moved:
-        text = f"{again} in the last digits of {len(moved)} metrics: its machine or library versions are others"
-        warnings.warn(text, RuntimeWarning, stacklevel=6)  # at the caller of Run.trace
 
 
 def families(columns: Sequence[str]) -> dict[str, dict[str, str]]:

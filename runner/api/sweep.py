@@ -190,13 +190,11 @@ class Sweep(store.Sweep):
         """
         import pandas as pd
 
-        from runner.reporting.sweep.detect import count_differences
+        from runner.reporting.sweep.detect import check_share, count_differences
         from runner.reporting.sweep.subject import choose
-        from runner.statistics.conclusion import SHARE
         from runner.sweeps.finer_step import work_out_sweep
 
-        if not SHARE < share <= 1.0:
-            raise RunnerError(f"share: cannot be shown ({share!r}). Allowed: above {SHARE:g}, up to 1.")
+        check_share(share)
         work_out_sweep(self)
         found = count_differences(choose(measure_sweep(self)), share)
         rows = [[one.metric, one.place, one.repetitions, *(one.ends or (None, None)), one.reason] for one in found]

@@ -7,17 +7,15 @@ import math
 
 import numpy as np
 
+from runner.assembly.run_config import RunConfig
 from runner.base.arrays import FloatArray
-from runner.config.run import RunConfig
+from runner.caveats.servo_contact_stability import ServoContact
 from runner.controllers import CommandsForce
 from runner.controllers.force.hybrid_force import HybridForceConfig
 from runner.controllers.stability import touch_radius
-from runner.environments.wall import WallConfig
 from runner.plants import PLANTS, options_of
 from runner.plants.servo import ServoLaw
-from runner.plants.servo_contact_stability import ServoContact
 from runner.robots.task_space import mass_along, tip_mobility
-from runner.sensing.force_torque import ForceTorqueConfig
 
 
 def servo_contact(config: RunConfig, q_start: FloatArray) -> ServoContact | None:
@@ -27,13 +25,13 @@ def servo_contact(config: RunConfig, q_start: FloatArray) -> ServoContact | None
         config: The checked config.
         q_start: Joint positions at the start, shape (nq,), in rad.
     """
-    plant, law, wall, timing = config.plant, config.controller, config.environment, config.timing
-    servo, sensor = options_of(plant).servo, config.wrist_sensor
-    if type(wall) is not WallConfig or not isinstance(law, CommandsForce) or servo is None:
+    plant, law, wall, timing = config.plant, config.controller, config.wall, config.timing
+    servo, sensor = options_of(plant).servo, config.force_torque_sensor
+    if wall is None or not isinstance(law, CommandsForce) or servo is None:
         return None
-    if PLANTS.commands(plant.kind) != "torque" or config.commands != "position" or len(config.arm.stages) > 1:
+    if not config.takes_torques or config.commands != "position" or len(config.arm.stages) > 1:
         return None
-    if config.robot.tool is None or not isinstance(sensor, ForceTorqueConfig):
+    if config.robot.tool is None or sensor is None:
         return None
     low_pass = sensor.low_pass
     return ServoContact(
@@ -64,10 +62,10 @@ def force_contact(config: RunConfig, q_start: FloatArray) -> float | None:
         config: The checked config.
         q_start: Joint positions at the start, shape (nq,), in rad.
     """
-    wall, law, loop, timing = config.environment, config.controller, config.loops[-1], config.timing
-    if type(wall) is not WallConfig or not isinstance(law, HybridForceConfig) or law.force_source != "wrist":
+    wall, law, loop, timing = config.wall, config.controller, config.loops[-1], config.timing
+    if wall is None or not isinstance(law, HybridForceConfig) or law.force_source != "wrist":
         return None
-    if not isinstance(config.wrist_sensor, ForceTorqueConfig):
+    if config.force_torque_sensor is None:
         return None
     normal = np.array(wall.normal) / np.linalg.norm(wall.normal)
     mass = mass_along(tip_mobility(config.arm.model, q_start, loop.joints.start), normal)

@@ -11,15 +11,15 @@ import numpy as np
 from runner.base.arrays import FloatArray
 from runner.base.memory import Memory
 from runner.caveats import plant_error, rounding
+from runner.caveats.integration_error import PlantError
 from runner.caveats.plant_error import PlantStep
+from runner.caveats.rounding_growth import RoundingGrowth
 from runner.caveats.rule import Caveat, Found, TraceRule
 from runner.caveats.setting import Setting, Signals
 from runner.caveats.setting_rules import SETTING_RULES
 from runner.caveats.trace_rules import TRACE_RULES
 from runner.caveats.versions import rules_digest
 from runner.config.judgement import THRESHOLDS, CaveatsConfig
-from runner.metrics.plant_error import PlantError
-from runner.metrics.rounding import RoundingGrowth
 
 _KEYS = {rule: key for rule, (key, *_) in THRESHOLDS.items()}
 _values = attrgetter(*(f"{rule}.{key}" for rule, key in _KEYS.items()))

@@ -2,8 +2,8 @@
 
 from typing import NamedTuple
 
+from runner.caveats.integration_error import PARTED, PLANT, PlantError, sufficient_step
 from runner.caveats.rule import Caveat, percent
-from runner.metrics.plant_error import PARTED, PLANT, PlantError, sufficient_step
 from runner.plugins.metric_units import unit_of
 
 NAME = "plant_error"

@@ -1,7 +1,7 @@
 """Caveat on the growth of rounding errors."""
 
+from runner.caveats.rounding_growth import RoundingGrowth
 from runner.caveats.rule import Caveat, percent
-from runner.metrics.rounding import RoundingGrowth
 
 NAME = "rounding_grows"
 

@@ -12,14 +12,13 @@ from runner.base.arrays import FloatArray
 from runner.base.trace import Trace
 
 if TYPE_CHECKING:
+    from runner.assembly.run_config import RunConfig
+    from runner.caveats.servo_contact_stability import ServoContact
     from runner.caveats.time_constants import TimeConstant
     from runner.config.robot import RobotConfig
-    from runner.config.run import RunConfig
     from runner.controllers.stability import VelocityLoop
-    from runner.plants.servo_contact_stability import ServoContact
     from runner.robots.mismatch import MismatchConfig
     from runner.robots.model import RobotModel
-    from runner.sensing.encoders import EncoderNoise
 
 IDEAL = "kinematic"
 """Plant with ideal joint motion; forces have no effect on it."""
@@ -44,7 +43,8 @@ class Setting:
         ticks_per_torque: Number of ticks for which the torque of each joint is constant, shape (nq,).
         tracked: True if the tip must follow a path, instead of only reaching a goal.
         complies: True if the controller must comply with the external wrench.
-        noise: Noise of the joint measurement; None for encoders of another kind.
+        noise: Largest noise or resolution of a measured joint position, in rad; None if velocities are not exact, or
+            for encoders of another kind.
         mismatch: Factors on the nominal model of the controllers; None for a mismatch of another kind.
         mass: Mass of all moving links, in kg.
         contact: Contact of a servo-driven arm with a wall under an admittance law; None without one.
@@ -68,7 +68,7 @@ class Setting:
     ticks_per_torque: NDArray[np.intp]
     tracked: bool
     complies: bool
-    noise: "EncoderNoise | None"
+    noise: float | None
     mismatch: "MismatchConfig | None"
     mass: float
     contact: "ServoContact | None"
@@ -111,7 +111,7 @@ def setting_of(config: "RunConfig", q_start: FloatArray | None = None) -> Settin
         ticks_per_torque=ticks,
         tracked=config.path.tracked,
         complies=config.environment.kind != "free" and any(loop.uses_wrench for loop in config.loops),
-        noise=config.encoder_noise,
+        noise=_noise_beside_exact(config),
         mismatch=config.model_error,
         mass=mass,
         contact=None if q_start is None else servo_contact(config, q_start),
@@ -122,13 +122,21 @@ def setting_of(config: "RunConfig", q_start: FloatArray | None = None) -> Settin
     )
 
 
+def _noise_beside_exact(config: "RunConfig") -> float | None:
+    noise = config.encoder_noise
+    if noise is None or noise.velocity != "exact":
+        return None
+    drawn = 0.0 if noise.distribution == "none" else max(noise.position.tolist())
+    return float(max(drawn, *noise.resolution.tolist()))
+
+
 def _left_out_of(config: "RunConfig") -> Mapping[str, Sequence[str]]:
     """Return messages, by robot file, about contents that would change the motion and are missing in the run.
 
     Damping, friction and armature of a joint in the file count if the value of the joint in the run is zero. The
     mapping is empty for the kinematic plant.
     """
-    from runner.config.flexibility import find_flexibility
+    from runner.assembly.flexibility import find_flexibility
     from runner.plants.decoupled import TorquePlantConfig
     from runner.plants.friction_law import joint_friction
     from runner.robots.joint_dynamics import by_value

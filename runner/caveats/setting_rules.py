@@ -47,14 +47,7 @@ NO_EFFORT_LIMIT = SettingRule("no_effort_limit", _lifted, _tell_lifted)
 
 
 def _noise_beside_exact(setting: Setting) -> float | None:
-    """Return the largest noise or resolution of a measured joint position, in rad, if velocities are exact."""
-    noise = setting.noise
-    if noise is None or noise.velocity != "exact":
-        return None
-    if not setting.torques:  # laws that command positions do not use velocities
-        return None
-    drawn = 0.0 if noise.distribution == "none" else max(noise.position.tolist())
-    return float(max(drawn, *noise.resolution.tolist()))
+    return setting.noise if setting.torques else None  # laws that command positions do not use velocities
 
 
 def _tell_noise(value: float, setting: Setting) -> str:
@@ -134,7 +127,7 @@ def _radius(setting: Setting) -> float | None:
     if setting.contact is None:
         return None
     # imported here, because the store imports the rules without rigid-body models
-    from runner.plants.servo_contact_stability import contact_radius
+    from runner.caveats.servo_contact_stability import contact_radius
 
     try:
         return round(contact_radius(setting.contact), _DIGITS_OF_RADIUS)

@@ -9,8 +9,8 @@ from typing import NamedTuple, cast
 
 import numpy as np
 
+from runner.assembly.run_config import RunConfig
 from runner.base.arrays import FloatArray
-from runner.config.run import RunConfig
 from runner.controllers import CONTROLLERS
 from runner.controllers.force.admittance import AdmittanceConfig
 from runner.controllers.force.hybrid_force import HybridForceConfig

@@ -17,7 +17,7 @@ from typing import TYPE_CHECKING, Any
 from runner.base.errors import RunnerError
 from runner.base.sanitize import one_line
 from runner.cli.arguments import Parser, Stored, config_folder, seconds
-from runner.store.kinds import kind_of, open_stored
+from runner.store.kinds import kind_of
 
 if TYPE_CHECKING:
     from runner.recordings.compare import RecordingComparison
@@ -83,6 +83,7 @@ def _compare(options: Namespace) -> None:
     from runner.reporting.comparison.text import level_lines, run_lines, sweep_lines
     from runner.reporting.sweep.subject import main_metrics
     from runner.store.axes import find_axis
+    from runner.store.opening import open_stored
     from runner.store.run import Run
     from runner.store.sweep import Sweep
     from runner.sweeps.measurements import check_metrics, limit_sweep
@@ -225,8 +226,8 @@ def _compare_recording(given: Sequence[Path], recordings: Sequence[Path], option
 
 def _replay(recording: Path, options: Namespace) -> None:
     """Make the run of a log, and compare it with the log."""
+    from runner.cli.replay import replay
     from runner.config.compose.files import outputs_dir
-    from runner.doctor.replay import replay
     from runner.recordings.compare import compare_recording
 
     made = replay(

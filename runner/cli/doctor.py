@@ -73,8 +73,8 @@ def _examine_logs(options: Namespace) -> int:
         raise RunnerError("--output: needs --robot ROBOT, whose joints the column map names.")
     if options.columns is not None and len(options.files) > 1:
         raise RunnerError("--columns: is for one log. Examine the logs one by one.")
+    from runner.assembly.validation import validate
     from runner.config.compose.compose import compose
-    from runner.config.validation import validate
     from runner.doctor.log import examine_log
     from runner.doctor.log_files import next_line, write_log_files
     from runner.doctor.log_words import log_lines
@@ -107,10 +107,11 @@ def _examine_robot(options: Namespace, path: Path) -> int:
         print(one_line(str(finding)))
     folder, formats = options.output, options.format or ["config"]
     if folder is not None and "html" in formats:
+        from runner.assembly.versions import versions
         from runner.reporting.doctor_report import doctor_document
         from runner.reporting.render import write_report
 
-        write_report(doctor_document(found), folder, ("html",))
+        write_report(doctor_document(found, versions()), folder, ("html",))
     if folder is not None and "config" in formats:
         from runner.doctor.config_folder import write_folder  # imports the models of all config groups
 

@@ -37,9 +37,9 @@ def add_arguments(parser: Parser) -> None:
 
 def run(options: Namespace) -> int:
     """Print what the logs can determine, then the answer and the parameters; print the folder as the last line."""
+    from runner.assembly.validation import validate
     from runner.config.compose.compose import compose
     from runner.config.compose.files import outputs_dir
-    from runner.config.validation import validate
     from runner.identification.examination import examine_logs, read_question
     from runner.identification.identify import identify
     from runner.identification.words import answer_lines, examination_lines, method_lines

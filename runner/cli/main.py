@@ -1,4 +1,4 @@
-"""Command-line entry point: the commands, their parsers and help, the choice of the command, and exit codes.
+"""Command-line entry point: help on all commands, the choice of the command, and exit codes.
 
 Exit codes: 0 success, 1 a run failed or a check failed, 2 invalid input, 3 internal error, 75 temporary, 130
 interrupted, 143 terminated. This module imports little, so that help and completion start fast.
@@ -11,7 +11,7 @@ import shlex
 import signal
 import sys
 import textwrap
-from collections.abc import Callable, Iterable, Sequence
+from collections.abc import Callable, Sequence
 from pathlib import Path
 from typing import NoReturn
 
@@ -21,13 +21,9 @@ from runner.base.former_names import COMMANDS as FORMER_COMMANDS
 from runner.base.progress import show_progress
 from runner.base.sanitize import one_line
 from runner.cli import commands
-from runner.cli.arguments import Parser
 from runner.cli.commands import OVERRIDES
+from runner.cli.parser import COMMON, build_parser
 from runner.config.compose.files import groups
-
-COMMON = Parser(prog="runner", add_help=False)
-"""Options that every command has."""
-COMMON.add_shared("plugin", "quiet")
 
 GUIDE = """\
 runner: simulate and compare robot-arm controllers from the command line
@@ -156,19 +152,6 @@ def _print_path(run: Callable[[], int]) -> int:
         if Path(line).exists():
             print(line)
     return code
-
-
-def build_parser(names: Iterable[str] = commands.names()) -> Parser:
-    """Return the parser of the command line; only the modules of the commands named are imported."""
-    root = Parser(prog="runner", parents=[COMMON], usage="runner [COMMAND] ...")
-    actions = root.add_subparsers(dest="command", metavar="COMMAND", prog="runner")
-    for name in names:
-        module = commands.load(name)
-        root.commands[name] = parser = actions.add_parser(name, parents=[COMMON])
-        parser.describe(str(module.__doc__))
-        module.add_arguments(parser)
-        parser.set_defaults(run=module.run, parser=parser)
-    return root
 
 
 def help_text() -> str:

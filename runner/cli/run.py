@@ -184,7 +184,7 @@ def _simulate(line: _Line, overrides: Sequence[str], config_dirs: Sequence[Path]
 
         return print_sweep(sweep_typed(*_split(overrides), Composer(config_dirs, line.root), command))
     composed = compose(overrides, config_dirs, line.root)
-    from runner.config.validation import validate  # after the composition, so that errors are reported at once
+    from runner.assembly.validation import validate  # after the composition, so that errors are reported at once
 
     config = validate(composed)
     from runner.sweeps.job import RunJob, perform  # after validation, for the same reason
@@ -346,11 +346,11 @@ def _print_spec(run: "Run") -> None:
 
 def _print_caveats(run: "Run", thresholds: Any) -> None:
     """Print the caveats of a run, and the thresholds that differ from those of the command's config."""
-    from runner.caveats.versions import changes_since
+    from runner.sweeps.changes import changed_rules
 
     for caveat in run.caveats:
         print(one_line(f"runner: caveat: {caveat['rule']}: {caveat['text']}"), file=sys.stderr)
-    changes = changes_since(run.caveat_rules, thresholds)
+    changes = changed_rules(run, thresholds)
     if changes:
         print(one_line(f"runner: stored before; its caveats were looked for by {'; '.join(changes)}"), file=sys.stderr)
 

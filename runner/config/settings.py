@@ -17,7 +17,7 @@ class RunSettings(StrictModel):
         duration: Length of a run, in s; None takes the duration of the trajectory.
         gravity: Magnitude of gravity along -z of the base, in m/s^2, for the plant and the controllers' model.
         plant_error: True to repeat repetition 0 on Runge-Kutta, and from a moved start; see
-            runner/metrics/plant_error.py and rounding.py.
+            runner/caveats/integration_error.py and rounding.py.
         outputs: Folder in which runs are stored.
     """
 

@@ -1,7 +1,7 @@
 """Stability of sampled control loops: linear maps of one period, their spectral radii, and critical values.
 
 Velocity loops, admittance control and force control in contact with a wall, and delayed or missed commands. With joint
-servos, the arm's mass and the servo stiffness also matter in contact; see runner/plants/servo_contact_stability.py.
+servos, the arm's mass and the servo stiffness also matter in contact; see runner/caveats/servo_contact_stability.py.
 """
 
 import math

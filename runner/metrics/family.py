@@ -2,13 +2,15 @@
 
 import copy
 from collections.abc import Iterator
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from types import ModuleType
 
+from runner.base.arrays import FloatArray
 from runner.base.errors import SimulationError
 from runner.base.trace import Trace
 from runner.plugins import metric_units
 from runner.plugins.guard import describe_fault, find_fault, is_write, place, read_only
+from runner.trajectories.shaped import Shifted
 from runner.trajectories.trajectory import Trajectory
 
 
@@ -28,6 +30,10 @@ class MetricContext:
     settling_band: float
     period: float
     reach: float | None = None
+
+    def at_stage(self, offset: FloatArray) -> "MetricContext":
+        """Return the context of a stage whose end point keeps an offset to the tip, shape (3,), in m."""
+        return replace(self, trajectory=Shifted(self.trajectory, offset))
 
 
 def evaluate_added(trace: Trace, context: MetricContext, notices: list[str]) -> dict[str, float | None]:

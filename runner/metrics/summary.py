@@ -2,7 +2,7 @@
 
 import math
 from collections.abc import Mapping
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 
 import numpy as np
 
@@ -11,7 +11,6 @@ from runner.base.trace import Trace
 from runner.metrics import positioning, tracking
 from runner.metrics.family import MetricContext, evaluate_added
 from runner.plugins import metric_units
-from runner.trajectories.shaped import Shifted
 
 _FAMILIES = metric_units.METRICS.built_in()
 MOST_LISTED = 2000
@@ -95,7 +94,7 @@ def _measure_block(traces: Trace, context: MetricContext) -> dict[str, FloatArra
     for family in _FAMILIES:
         values |= family.evaluate(traces, context)
     for index, stage in enumerate(traces.stage_names[:-1]):
-        stage_context = replace(context, trajectory=Shifted(context.trajectory, traces.offsets[index]))
+        stage_context = context.at_stage(traces.offsets[index])
         at_stage = traces.at_stage(index)
         for family in (positioning, tracking):
             of_stage = family.evaluate(at_stage, stage_context)

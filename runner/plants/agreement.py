@@ -11,7 +11,7 @@ from runner.robots.model import RobotModel
 from runner.symbolic.bullet_step import BulletArm
 
 if TYPE_CHECKING:
-    from runner.plants.bullet import Bullet
+    from runner.plants.bullet_engine import Bullet
     from runner.plants.mujoco import Mujoco
 
 ENGINES = {"bullet": "PyBullet", "mujoco": "MuJoCo"}
@@ -82,7 +82,7 @@ def has_bits_of_bullet(
     Raises:
         ConfigError: if PyBullet cannot load the text.
     """
-    from runner.plants.bullet import Bullet
+    from runner.plants.bullet_engine import Bullet
 
     step = 10.0 * _STEP
     code, plant, n = CompiledBullet(model, arm, step), Bullet(urdf, model, step, 1), model.nq
@@ -112,7 +112,7 @@ def has_bits_of_bullet(
 
 def _make(kind: str, urdf: str, model: RobotModel) -> "Bullet | Mujoco":
     if kind == "bullet":
-        from runner.plants.bullet import Bullet
+        from runner.plants.bullet_engine import Bullet
 
         return Bullet(f"{urdf}\n", model, _STEP, 1)  # another text than that of a run, which would reuse the server
     from runner.plants.mujoco import Mujoco

@@ -20,7 +20,7 @@ from runner.symbolic.structure import any_number, arm_pattern, values_of
 from runner.symbolic.vectors import Vector, add, scale, subtract, times
 
 if TYPE_CHECKING:  # these modules use this one
-    from runner.plants.flexible_joints import Flexibility
+    from runner.plants.flexibility import Flexibility
 
 
 class Springs(NamedTuple):

@@ -8,7 +8,8 @@ from pydantic import NonNegativeFloat
 from runner.base.arrays import FloatArray
 from runner.base.errors import ConfigError, nearest
 from runner.base.sanitize import quoted
-from runner.plants.flexible_joints import Flexibility, links_of
+from runner.plants.flexibility import Flexibility
+from runner.plants.flexible_joints import links_of
 from runner.robots.robot import Robot, by_joint
 from runner.robots.vibration import Mode, find_modes
 from runner.schema.model import StrictModel

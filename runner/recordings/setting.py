@@ -7,21 +7,20 @@ from functools import cached_property
 import numpy as np
 import pinocchio as pin
 
+from runner.assembly.run_config import RunConfig
+from runner.assembly.validation import validate
 from runner.base.arrays import FloatArray
 from runner.base.errors import ConfigError, RunnerError
 from runner.base.trace import Trace
-from runner.config.run import RunConfig
-from runner.config.validation import validate
 from runner.metrics import effort, positioning, tracking
 from runner.metrics.family import MetricContext
 from runner.metrics.summary import measure, of_run
 from runner.recordings.columns_map import Holds, Side, Signal, stacked
 from runner.recordings.smoothing import derivative
 from runner.robots.robot import end_points
-from runner.simulation.assembly import metric_context
 from runner.simulation.recorder import describe
+from runner.simulation.results import metric_context
 from runner.store import Run
-from runner.trajectories.joint_motion import TipOfJoints
 
 AXES = ("x", "y", "z")
 
@@ -54,8 +53,8 @@ class Setting:
     @cached_property
     def desired_joints(self) -> FloatArray | None:
         """Desired joint positions, shape (T, nq), in rad; None if the desired motion is one of the tip."""
-        path = self.config.path
-        return path.joints.sample(self.trace.t)[:, 0] if isinstance(path, TipOfJoints) else None
+        motion = self.config.path.sample_joints(self.trace.t)
+        return None if motion is None else motion[:, 0]
 
     def signal(self, wanted: Signal) -> FloatArray:
         """Return a signal of the run, shape (T,); of a reference the desired position."""

@@ -15,7 +15,7 @@ from typing import NamedTuple
 import numpy as np
 
 from runner.base.quantities import ROUNDING, choose_unit, number, quantity
-from runner.metrics.rounding import SENSITIVE
+from runner.caveats.rounding_growth import SENSITIVE
 from runner.reporting.comparison.pairs import Pairs, compare, label_text
 from runner.reporting.limits import find_limit
 from runner.reporting.metric_titles import capital, title

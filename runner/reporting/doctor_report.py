@@ -1,5 +1,7 @@
 """Report on the inspection of a robot file, with a drawing of the robot."""
 
+from collections.abc import Mapping
+
 import numpy as np
 
 from runner.base.arrays import FloatArray
@@ -11,15 +13,19 @@ from runner.reporting.document import Document, Notice, Playback, Provenance, Se
 from runner.reporting.playback import joint_places, playback_bodies
 from runner.reporting.table import Column, numbers
 from runner.robots.model import RobotModel
-from runner.simulation.provenance import versions
 
 _SWING = 0.3  # rad, or share of the travel, by which each joint is shown
 _FRAMES = 24  # for each joint
 _SECONDS = 1.5  # for each joint
 
 
-def doctor_document(found: Examination) -> Document:
-    """Return the report on an examination."""
+def doctor_document(found: Examination, versions: Mapping[str, str]) -> Document:
+    """Return the report on an examination.
+
+    Args:
+        found: The examination.
+        versions: Versions of the libraries that made it, by name.
+    """
     counts = {grade: sum(f.grade == grade for f in found.findings) for grade in GRADES}
     if found.arm is not None:
         verdict = "fits" if found.arm.has_mass else "fits, with ideal joint position commands"
@@ -30,7 +36,7 @@ def doctor_document(found: Examination) -> Document:
         verdict = "is refused"
         notice = Notice("failure", "No model", "The robot cannot be taken until what is refused below is corrected.")
         sections = [Section("The robot", (notice,)), Section("Findings", (_findings(found),))]
-    rows = [("file", found.source.name), *versions().items()]
+    rows = [("file", found.source.name), *versions.items()]
     return Document(
         title=f"Robot {found.name}",
         subtitle=f"{found.source.name}, tip frame: {found.tip}",

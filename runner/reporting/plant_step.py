@@ -4,7 +4,7 @@ from collections.abc import Mapping, Sequence
 from typing import Any
 
 from runner.base.quantities import above_rounding, number, quantity
-from runner.metrics.plant_error import COMPARED
+from runner.caveats.integration_error import COMPARED
 from runner.reporting.metric_titles import key_names, title
 from runner.reporting.words import PLANT
 from runner.store import Run

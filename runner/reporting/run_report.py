@@ -2,19 +2,17 @@
 
 import json
 import re
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 from typing import Any
 
 import numpy as np
 import yaml
 
 from runner.base.dotted_keys import dotted, leaves
-from runner.base.errors import ConfigError, RunnerError
+from runner.base.errors import RunnerError
 from runner.base.machine import read_machine
 from runner.base.quantities import above_rounding, number, quantity, with_powers
-from runner.caveats.versions import changes_since
-from runner.config.compose.compose import compose
-from runner.metrics.rounding import SENSITIVE, STEP
+from runner.caveats.rounding_growth import SENSITIVE, STEP
 from runner.reporting.document import Block, Code, Cover, Document, Notice, Provenance, Section, Table, Text
 from runner.reporting.figures import before_failure, cover, desired_motion, playback, torque_and_error
 from runner.reporting.markup import literal
@@ -27,9 +25,7 @@ from runner.reporting.table import Column, numbers
 from runner.reporting.words import PLANT, in_words, join_values
 from runner.store import Run
 from runner.store.baselines import check_run, find_shipped
-
-Changes = Mapping[str, tuple[Any, Any]]
-"""Key, value in its group, and value of the run."""
+from runner.sweeps.changes import Changes, changed_keys, changed_rules
 
 _KEY_METRICS = 4
 _AT_REST = 4.0  # times the settling time, after which an arm is taken to rest
@@ -177,7 +173,7 @@ def caveat_notices(run: Run) -> list[Block]:
         Notice("warning", f"Caveat: {caveat['rule']}", literal(f"{capital(str(caveat['text']))}."))
         for caveat in run.caveats
     ]
-    changes = changes_since(run.caveat_rules)
+    changes = changed_rules(run)
     if changes:
         text = f"This run's caveats were looked for by {'; '.join(changes)}. The same command would not look again."
         notices.append(Notice("warning", "Caveats by other rules than today's", literal(text)))
@@ -271,19 +267,3 @@ def _yaml(value: Any) -> str:
     """Return a value as given in YAML or on the command line."""
     text = value if isinstance(value, str) else json.dumps(value, ensure_ascii=False)
     return re.sub(r"\b(\d)0{6,}\.0\b", lambda found: f"{float(found[0]):.0e}".replace("e+0", "e"), text)
-
-
-def changed_keys(run: Run) -> Changes | None:
-    """Return the keys that differ from what the run's groups hold by themselves, each as (default, value).
-
-    Returns:
-        The keys; None where the groups cannot be composed here, such as those of the user's config folder.
-    """
-    choices = run.provenance.get("choices", {})
-    try:
-        plain = compose([f"{group}={name}" for group, name in choices.items() if group != "experiment"])
-    except ConfigError:
-        return None
-    before, now = (dict(leaves(config, lists=False)) for config in (plain.resolved, run.config))
-    places = [place for place in now if place != ("outputs",) and place in before and before[place] != now[place]]
-    return {dotted(place): (before[place], now[place]) for place in places}

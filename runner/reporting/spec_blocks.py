@@ -5,12 +5,12 @@ from typing import TYPE_CHECKING
 
 from runner.base.errors import nearest
 from runner.base.quantities import format_range, number, quantity
-from runner.config.judgement import Bound
 from runner.plugins.metric_units import unit_of
 from runner.reporting.document import Block, Notice, Table
 from runner.reporting.markup import literal
 from runner.reporting.metric_titles import title
 from runner.reporting.table import numbers
+from runner.schema.bound import Bound
 from runner.statistics.spec import History, ends_of, set_after
 from runner.store import Run
 

@@ -14,6 +14,11 @@ from typing import Self
 import numpy as np
 from numpy.typing import NDArray
 
+from runner.assembly.assemble import assemble_program
+from runner.assembly.compiled.loop_program import LoopProgram, run_all
+from runner.assembly.compiled.loops import Rows
+from runner.assembly.drawn_loops import draw_commands, draws_together
+from runner.assembly.run_config import RunConfig
 from runner.base.arrays import FloatArray
 from runner.base.memory import Memory
 from runner.base.ticks import add_ticks
@@ -21,19 +26,14 @@ from runner.base.trace import Failure, Trace
 from runner.caveats.monitor import Watch, look_together
 from runner.caveats.setting import setting_of, signals_of
 from runner.config.parsing import require
-from runner.config.run import RunConfig
 from runner.metrics.family import MetricContext
 from runner.metrics.summary import measure
 from runner.plugins.discovery import added_parts
 from runner.robots.model import RobotModel
 from runner.sensing.encoders import encoder_errors
-from runner.simulation.assembly import assemble_program, metric_context, reach_of
 from runner.simulation.by_ticks import simulate_by_ticks
-from runner.simulation.compiled.loop_program import LoopProgram, run_all
-from runner.simulation.compiled.loops import Rows
-from runner.simulation.drawn_loops import draw_commands, draws_together
 from runner.simulation.recorder import DIVERGED_SPEED, describe, failure_of, find_divergence
-from runner.simulation.results import Collector
+from runner.simulation.results import Collector, metric_context, reach_of
 
 _MOST_BYTES = 32e6  # limit of the signals of runs that are simulated together
 _GROWTH = math.log(1.25)  # limit of the longest over the shortest run in a batch

@@ -5,14 +5,14 @@ from dataclasses import replace
 
 import numpy as np
 
+from runner.assembly.assemble import assemble
+from runner.assembly.closed_loop import ClosedLoop
+from runner.assembly.drawn_loops import with_drawn
+from runner.assembly.run_config import RunConfig
 from runner.base.arrays import FloatArray
 from runner.base.trace import Trace
-from runner.config.run import RunConfig
 from runner.sensing.force_torque import ForceTorqueSensor
 from runner.sensing.streams import ENVIRONMENT
-from runner.simulation.assembly import assemble
-from runner.simulation.closed_loop import ClosedLoop
-from runner.simulation.drawn_loops import with_drawn
 from runner.simulation.loop import simulate
 from runner.simulation.sensors import make_sensors
 

@@ -11,8 +11,8 @@ from runner.base.arrays import FloatArray
 from runner.base.ticks import add_ticks
 from runner.calibration.procedure import Outcome
 from runner.calibration.uncertainty import consistency
-from runner.config.calibration import CalibrationConfig
 from runner.simulation import provenance
+from runner.simulation.calibration_config import CalibrationConfig
 
 LEVEL = 0.99
 """Probability of the band in which the mean normalised error squared must lie."""

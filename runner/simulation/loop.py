@@ -5,6 +5,8 @@ from typing import Protocol, cast
 
 import numpy as np
 
+from runner.assembly.closed_loop import ClosedLoop
+from runner.assembly.compiled.loops import CompiledLoops, Rows
 from runner.base.arrays import FloatArray
 from runner.base.errors import SimulationError
 from runner.base.ticks import track_ticks
@@ -13,8 +15,6 @@ from runner.controllers import Controller, Loop, PositionController
 from runner.plants import PositionPlant
 from runner.sensing import Encoders, TorqueSensors, WristSensor
 from runner.sensing.encoders import JointEncoders
-from runner.simulation.closed_loop import ClosedLoop
-from runner.simulation.compiled.loops import CompiledLoops, Rows
 from runner.simulation.contact import Contact
 from runner.simulation.recorder import CHECK_EVERY, CommandTiming, Recorder, constant_delay
 from runner.simulation.sensors import JointTorques, MeasuredTip
@@ -61,7 +61,7 @@ def simulate(
         joints = closed.trajectory.sample_joints(recorder.times)
         contact = None
         if closed.interaction is not None and wrist is not None:
-            contact = Contact(closed, closed.interaction, wrist)
+            contact = Contact(closed, wrist)
             recorder.contact = contact.signals
         # A diverging run ends as a failure, not as a warning.
         with track_ticks(recorder.clock, closed.ticks), np.errstate(over="ignore", invalid="ignore"):

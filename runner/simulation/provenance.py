@@ -1,7 +1,6 @@
 """Provenance of a result: command, commit, versions and machine."""
 
 import os
-import platform
 import shlex
 import subprocess
 from collections.abc import Mapping, Sequence
@@ -9,18 +8,15 @@ from functools import cache, lru_cache
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from runner.base.engines import installed_versions
+from runner.assembly.dependent_keys import idle_keys
+from runner.assembly.versions import versions
 from runner.base.machine import this_machine, today
 from runner.base.paths import package_dir
-from runner.config.dependent_keys import idle_keys
 from runner.plugins import discovery
-from runner.symbolic.engine import evaluator
 
 if TYPE_CHECKING:
+    from runner.assembly.run_config import RunConfig
     from runner.config.composed import Composed
-    from runner.config.run import RunConfig
-
-_LIBRARIES = ("arm-control-runner", "pybullet", "mujoco", "pin", "numpy", "scipy", "hydra-core")
 
 
 def describe_origin(composed: "Composed", *subcommand: str) -> dict[str, Any]:
@@ -108,9 +104,3 @@ def _git(folder: Path, *words: str) -> str:
         check=True,
         timeout=10,
     ).stdout.strip()
-
-
-@cache
-def versions() -> dict[str, str]:
-    """Return the versions of Python and of the libraries that results depend on."""
-    return {"python": platform.python_version(), **installed_versions(_LIBRARIES), **evaluator()}

@@ -7,13 +7,13 @@ from typing import TypedDict
 import numpy as np
 from numpy.typing import NDArray
 
+from runner.assembly.closed_loop import ClosedLoop
+from runner.assembly.compiled.loops import Rows
 from runner.base.arrays import FloatArray
 from runner.base.errors import SimulationError
 from runner.base.trace import ContactSignals, Failure, Trace
 from runner.robots.model import RobotModel
 from runner.robots.robot import Robot, end_points
-from runner.simulation.closed_loop import ClosedLoop
-from runner.simulation.compiled.loops import Rows
 
 # No arm reaches this speed, so a run above it has diverged.
 DIVERGED_SPEED = 1e6  # rad/s, or m/s for a prismatic joint

@@ -9,17 +9,18 @@ from typing import Any
 
 import numpy as np
 
+from runner.assembly.run_config import RunConfig
 from runner.base.arrays import FloatArray
 from runner.base.errors import SimulationError
 from runner.base.trace import Failure, Trace
+from runner.caveats.integration_error import PlantError
 from runner.caveats.monitor import Watch
 from runner.caveats.plant_error import PlantStep
+from runner.caveats.rounding_growth import RoundingGrowth
 from runner.caveats.rule import Found
 from runner.caveats.setting import signals_of
-from runner.config.run import RunConfig
+from runner.controllers import ControllerConfig, FollowsWithinReach
 from runner.metrics.family import MetricContext
-from runner.metrics.plant_error import PlantError
-from runner.metrics.rounding import RoundingGrowth
 from runner.metrics.summary import Summary, evaluate, summarize_arrays
 from runner.simulation.provenance import job_provenance
 
@@ -241,3 +242,13 @@ def timing(
         record |= dict(zip(names, np.percentile(law_seconds, [50, 99, 99.9, 100]).tolist(), strict=True))
         record["load_average"] = os.getloadavg()[0]
     return record
+
+
+def metric_context(config: RunConfig) -> MetricContext:
+    """Return the data of a run that metrics need besides its trace."""
+    return MetricContext(config.path, config.robot.settling_band, config.timing.tick, reach_of(config.controller))
+
+
+def reach_of(controller: ControllerConfig) -> float | None:
+    """Return the distance up to which a mounted stage follows its target, in m; None without such a limit."""
+    return controller.reach if isinstance(controller, FollowsWithinReach) else None

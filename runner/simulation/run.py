@@ -15,25 +15,25 @@ from functools import partial
 
 import numpy as np
 
+from runner.assembly.assemble import assemble
+from runner.assembly.drawn_loops import with_drawn
+from runner.assembly.run_config import RunConfig
+from runner.assembly.run_cost import TICKS_AT_ONCE
+from runner.assembly.validation import validate
 from runner.base.arrays import FloatArray
 from runner.base.errors import ConfigError
 from runner.base.trace import Trace
+from runner.caveats import rounding_growth
+from runner.caveats.integration_error import COMPARED, PlantError, compare, on_runge_kutta, reason_not_comparable
 from runner.caveats.monitor import Watch
+from runner.caveats.rounding_growth import RoundingGrowth, move_start
 from runner.caveats.setting import setting_of
-from runner.config.limits import TICKS_AT_ONCE
 from runner.config.parsing import require
-from runner.config.run import RunConfig
-from runner.config.validation import validate
-from runner.metrics import rounding
-from runner.metrics.plant_error import COMPARED, PlantError, compare, on_runge_kutta, reason_not_comparable
-from runner.metrics.rounding import RoundingGrowth, move_start
 from runner.plugins.discovery import has_users_parts
 from runner.sensing.streams import ROUNDING
-from runner.simulation.assembly import assemble, metric_context
 from runner.simulation.batch import BatchResult, BatchSimulator, simulate_together
 from runner.simulation.by_ticks import simulate_assembled, simulate_by_ticks
-from runner.simulation.drawn_loops import with_drawn
-from runner.simulation.results import Collector, RunResult, measure_repetition
+from runner.simulation.results import Collector, RunResult, measure_repetition, metric_context
 
 MOST_THREADS = 4
 """Largest number of threads; more would wait for each other."""
@@ -148,7 +148,7 @@ def measure_rounding(
     context = metric_context(config)
     signs = np.random.default_rng([config.settings.seed, draw, ROUNDING]).choice([-1.0, 1.0], config.arm.model.nq)
     moved = measure_repetition(simulate_repetition(config, signs=signs), context, [])
-    return rounding.compare(*(own or measure_repetition(simulate_repetition(config), context, [])), *moved)
+    return rounding_growth.compare(*(own or measure_repetition(simulate_repetition(config), context, [])), *moved)
 
 
 def simulate_blocks(config: RunConfig, threads: int = 1, ticks: int = TICKS) -> RunResult | None:

@@ -5,9 +5,10 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from runner.assembly.closed_loop import ClosedLoop
+from runner.assembly.cross_checks import endpoint_ticks
+from runner.assembly.run_config import RunConfig
 from runner.base.arrays import FloatArray
-from runner.config.cross_checks import endpoint_ticks
-from runner.config.run import RunConfig
 from runner.controllers.controller import ControlLaw
 from runner.plants import Plant, options_of
 from runner.plugins.registry import KindConfig
@@ -15,7 +16,6 @@ from runner.robots.model import RobotModel
 from runner.sensing import JOINT_TORQUE_SENSORS, NOISES, WRIST_SENSORS, Encoders, TorqueSensors, WristSensor
 from runner.sensing.endpoint import EndpointSensor
 from runner.sensing.streams import COMPUTATION, JOINT_TORQUES, TIP
-from runner.simulation.closed_loop import ClosedLoop
 from runner.simulation.recorder import CommandTiming
 
 

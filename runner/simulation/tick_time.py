@@ -5,9 +5,9 @@ from collections.abc import Callable
 from contextlib import AbstractContextManager, nullcontext
 from dataclasses import replace
 
-from runner.config.run import RunConfig
+from runner.assembly.assemble import assemble
+from runner.assembly.run_config import RunConfig
 from runner.plugins.discovery import added_parts
-from runner.simulation.assembly import assemble
 from runner.simulation.batch import BatchSimulator, simulate_together
 from runner.simulation.by_ticks import simulate_assembled
 

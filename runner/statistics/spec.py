@@ -8,7 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from runner.base.arrays import FloatArray
-from runner.config.judgement import Bound
+from runner.schema.bound import Bound
 
 if TYPE_CHECKING:
     from runner.statistics.proportion import Share

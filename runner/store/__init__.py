@@ -7,12 +7,12 @@ if TYPE_CHECKING:
     from runner.store.calibration import Calibration, find_calibration, open_calibration, write_calibration
     from runner.store.finished import Finished, find_outcome, find_run
     from runner.store.identity import run_hash, run_hashes
-    from runner.store.kinds import open_stored
+    from runner.store.kinds import prepare
+    from runner.store.opening import open_stored
     from runner.store.run import Run, judge_run, open_run
     from runner.store.seal import DamagedError, SchemaError, simulated_part
     from runner.store.shards import Outcome
     from runner.store.sweep import Sweep, open_runs, open_sweep, write_grid, write_sweep
-    from runner.store.writing import prepare, write_run
 
 __all__ = [
     "Calibration",
@@ -37,19 +37,18 @@ __all__ = [
     "simulated_part",
     "write_calibration",
     "write_grid",
-    "write_run",
     "write_sweep",
 ]
 _MODULES = {
     "calibration": "Calibration find_calibration open_calibration write_calibration",
     "finished": "Finished find_outcome find_run",
-    "kinds": "open_stored",
+    "kinds": "prepare",
+    "opening": "open_stored",
     "identity": "run_hash run_hashes",
     "run": "Run judge_run open_run",
     "seal": "DamagedError SchemaError simulated_part",
     "shards": "Outcome",
     "sweep": "Sweep open_runs open_sweep write_grid write_sweep",
-    "writing": "prepare write_run",
 }
 
 

@@ -186,6 +186,13 @@ class Axis:
         texts = len(self.values) > 0 and isinstance(self.values[0], str)
         return None if texts else np.array(self.values, dtype=float)
 
+    @cached_property
+    def unit(self) -> str:
+        """Unit of the key; "1" without one."""
+        from runner.config.compose.units import key_unit  # models of all kinds, which only reports need
+
+        return key_unit(self.name)
+
     @property
     def texts(self) -> list[str]:
         """Values of the axis as strings."""

@@ -26,8 +26,8 @@ from runner.base.limits import Limit, read_text
 from runner.base.paths import studies_dir
 from runner.config.compose.files import described_files
 from runner.config.compose.messages import describe
-from runner.config.judgement import Bound
 from runner.plugins.metric_units import unit_of, units
+from runner.schema.bound import Bound
 from runner.schema.model import StrictModel
 from runner.store import Run
 from runner.store.cells import FORMER, FormerBaseline, SweepBaseline

@@ -6,17 +6,12 @@ from collections.abc import Iterator, Mapping, Sequence
 from functools import lru_cache
 from typing import Any
 
-from runner.base.engines import installed_versions
+from runner.assembly.versions import engine_versions
 from runner.base.memory import Memory
-from runner.plants.stepped_bullet import bullet_versions
 from runner.plugins.discovery import GROUPS, added_parts, source_files
 from runner.store.names import Names
 from runner.store.physics import content_digest, physics_digest
 from runner.store.seal import simulated_part
-from runner.symbolic.engine import evaluator
-
-_OWN = ("kinematic", "none", "rk4", "rk4_flexible_links")  # built-in plants without an external engine
-_ENGINES = {"bullet": (), "mujoco": ("mujoco",), **dict.fromkeys(_OWN, ())}
 
 _MEMORY = Memory(4096)  # JSON strings of config groups, and the kinds that the groups name
 _PLACES = 12  # bytes of the digest in a name
@@ -57,7 +52,7 @@ def _content(resolved: Mapping[str, Any], urdf: str) -> Iterator[str]:
         before = ", "
     yield "}" if config else f"{before}}}"
     parts = _parts_digest(tuple(sorted(_parts(resolved))))
-    engines = _engines(str(resolved.get("plant", {}).get("kind", "none")))
+    engines = engine_versions(str(resolved.get("plant", {}).get("kind", "none")))
     yield f', "engines": {json_text(engines)}, "parts": "{parts}", "source": "{physics_digest()}"'
     yield f', "urdf": {_MEMORY.recall(_sorted_text, urdf)}}}'
 
@@ -87,17 +82,6 @@ def _kinds(group: Mapping[str, Any]) -> frozenset[str]:
     """Return every `kind` in a group of a config, at any depth."""
     inner = (_kinds(value) for key, value in group.items() if isinstance(value, Mapping) and key != "kind")
     return frozenset([str(group["kind"])] if "kind" in group else []).union(*inner)
-
-
-@lru_cache(maxsize=16)
-def _engines(plant: str) -> dict[str, str]:
-    """Return the versions of the engines that simulate a kind of plant; a plug-in plant may use any engine.
-
-    Runs of plant=bullet have the same names with and without PyBullet; see bullet_versions.
-    """
-    used = _ENGINES.get(plant, ("mujoco", "pybullet"))
-    own = bullet_versions() if plant == "bullet" else {}
-    return installed_versions((*used, "pin")) | evaluator() | own
 
 
 @lru_cache(maxsize=16)

@@ -1,4 +1,4 @@
-"""Kinds of stored results: folder, files and command of each, the name `latest`, and a function that opens a folder."""
+"""Kinds of stored results: folder, files and command of each, the name `latest`, and the outputs folder."""
 
 import json
 import sys
@@ -6,16 +6,11 @@ import time
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
-from typing import TYPE_CHECKING, Literal
+from typing import Literal
 
 from runner.base.bounded_json import decode_json
 from runner.base.errors import RunnerError, StoreError
 from runner.config.compose.files import outputs_dir
-
-if TYPE_CHECKING:
-    from runner.store.calibration import Calibration
-    from runner.store.run import Run
-    from runner.store.sweep import Sweep
 
 Kind = Literal["run", "sweep", "tuning", "challenge", "calibration", "identification", "report"]
 WORD = "latest"
@@ -125,23 +120,6 @@ def report_place(outputs: Path, name: str) -> Path:
     return folder
 
 
-def open_stored(folder: Path) -> "Run | Sweep | Calibration":
-    """Open a folder; a tuning is opened as the sweep of its trials, a challenge as that of its runs.
-
-    Raises:
-        StoreError: if the folder is none of these, or its run is unfinished.
-        DamagedError: if the result is damaged.
-    """
-    from runner.store.calibration import open_calibration
-    from runner.store.run import open_run
-    from runner.store.sweep import open_sweep
-
-    kind = kind_of(folder)
-    if kind in ("sweep", "tuning", "challenge"):
-        return open_sweep(folder)
-    return open_calibration(folder) if kind == "calibration" else open_run(folder)
-
-
 def _newest(outputs: Path, kinds: Sequence[Kind]) -> Path:
     found = max(_notes(outputs, kinds), default=None)
     if found is None:
@@ -166,3 +144,21 @@ def _notes(outputs: Path, kinds: Sequence[Kind]) -> Iterator[tuple[int, Path]]:
 def _needed(kinds: Sequence[Kind]) -> str:
     named = ", ".join(f"a {kind} (`{KINDS[kind].command}` prints it)" for kind in kinds)
     return f"Allowed: the folder of {named}, or the word {WORD}."
+
+
+def prepare(outputs: Path) -> None:
+    """Check that results can be stored in a folder, before anything is computed.
+
+    Raises:
+        StoreError: if the folder cannot be created or written to, or a folder in it is a link.
+    """
+    from runner.base.atomic import refuse_links, write_atomically  # not needed to find a result
+
+    for name in (*(kind.folder for kind in KINDS.values()), *FILES):
+        refuse_links(outputs, outputs / name)
+    probe = outputs / "runs" / ".writable"
+    try:
+        write_atomically(probe, b"")
+    except StoreError as error:
+        raise StoreError(f"{error}; choose a folder that can be written to, as in outputs=FOLDER") from error
+    probe.unlink(missing_ok=True)

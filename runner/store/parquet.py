@@ -1,4 +1,4 @@
-"""Parquet files: columns made from Arrow buffers, and files with the values of many repetitions.
+"""Parquet files: columns made from Arrow buffers, traces, and files with the values of many repetitions.
 
 The columns need no import of pandas, which takes half a second.
 """
@@ -14,6 +14,7 @@ from numpy.typing import NDArray
 
 from runner.base import limits
 from runner.base.arrays import FloatArray
+from runner.base.trace import Trace
 from runner.store.seal import MEND, DamagedError
 
 if TYPE_CHECKING:
@@ -171,3 +172,40 @@ def numbers(column: Any) -> FloatArray:
 
 def _damaged(path: Path, error: Exception) -> DamagedError:
     return DamagedError(f"cannot read {path}: {str(error).splitlines()[0]}; {MEND}")
+
+
+def trace_table(trace: Trace) -> Any:
+    """Return a trace as an Arrow table: one column per signal, its unit in the metadata of the column."""
+    import pyarrow
+
+    joints = range(trace.q.shape[1])
+    columns: list[tuple[str, str, np.ndarray]] = [("t", "s", trace.t)]
+    places = trace.joint_units
+    speeds = [f"{unit}/s" for unit in places]
+    torques = ["N" if unit == "m" else "N m" for unit in places]
+    for name, units, values in (("q", places, trace.q), ("dq", speeds, trace.dq), ("tau", torques, trace.tau)):
+        columns += [(f"{name}{joint + 1}", units[joint], values[:, joint]) for joint in joints]
+    if trace.q_command is not None:
+        columns += [(f"q{joint + 1}_command", places[joint], trace.q_command[:, joint]) for joint in joints]
+    if trace.contact is not None:
+        for name in ("external", "felt", "reading", "load", "reaction"):
+            values = getattr(trace.contact, name)
+            columns += [(f"{name}_force_{axis}", "N", values[:, index]) for index, axis in enumerate("xyz")]
+            columns += [(f"{name}_moment_{axis}", "N m", values[:, 3 + index]) for index, axis in enumerate("xyz")]
+    tip_signals = (
+        ("tip", "m", trace.tip),
+        ("error", "m", trace.error),
+        ("desired", "m", trace.desired[:, 0]),
+        ("desired_velocity", "m/s", trace.desired[:, 1]),
+        ("desired_acceleration", "m/s^2", trace.desired[:, 2]),
+    )
+    for name, unit, values in tip_signals:
+        columns += [(f"{name}_{axis}", unit, values[:, index]) for index, axis in enumerate("xyz")]
+    for index, stage in enumerate(trace.stage_names[:-1]):
+        stage_trace = trace.at_stage(index)
+        for name, values in ((f"{stage}_tip", stage_trace.tip), (f"{stage}_error", stage_trace.error)):
+            columns += [(f"{name}_{axis}", "m", values[:, number]) for number, axis in enumerate("xyz")]
+    schema = pyarrow.schema(
+        [pyarrow.field(name, pyarrow.float64(), metadata={"unit": unit}) for name, unit, _ in columns]
+    )
+    return pyarrow.Table.from_arrays([plain_column(values) for *_, values in columns], schema=schema)

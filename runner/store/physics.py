@@ -1,9 +1,9 @@
 """Physics modules, whose content is part of every run hash.
 
 A module counts if a number of a run follows from it: it reads the resolved config (`config`), builds robot, path,
-control law, plant and sensors, simulates, calibrates or measures. Other modules are left out. Some compose the
-resolved config, which the hash contains. Some only reject, report or store something. The rest use finished runs:
-caveats, statistics, store, reports, commands.
+control law, plant and sensors (`assembly`), simulates, calibrates or measures. Other modules are left out. Some compose
+the resolved config, which the hash contains. Some only reject, report or store something. The rest use finished runs:
+caveat rules, statistics, store, reports, commands.
 
 Each module has an id. After a move, change the module's folder in the table and keep its id: no hash changes.
 """
@@ -20,12 +20,15 @@ from runner.store import syntax
 
 # Folders and their modules. A module's id follows "="; without "=" it is the module's name.
 _TABLE = """
+    assembly: arms assemble=assembly closed_loop=loop.closed_loop cross_checks desired_motion drawn_loops flexibility
+        input_shaping run_config=run timing validation wall=loop.wall
+    assembly/compiled: commands law loop_program loops
     base: portable trace
     calibration: __init__=calibration.__init__ gravity=calibration.gravity orientations procedure
         tool_centre_point=calibration.tool_centre_point tool_direction=calibration.tool_direction
         uncertainty=repeatability weighing
-    config: arms calibration cross_checks desired_motion flexibility groups input_shaper parsing robot=config.robot run
-        settings timing torque_limits validation
+    caveats: integration_error=plant_error rounding_growth=rounding
+    config: calibration groups input_shaper parsing robot=config.robot robot_files settings torque_limits
     controllers: __init__=controllers.__init__ controller=controllers.controller
         disturbance_observer=controllers.disturbance_observer notch=controllers.notch torque_filter torque_law
     controllers/force: admittance admittance_filter force_reading=controllers.force_reading hybrid_force impedance
@@ -36,12 +39,11 @@ _TABLE = """
     controllers/macro_mini: inertial_damping macro_mini stage_loops
     controllers/operational_space: operational_space tip_task whole_body
     environments: __init__=environments.__init__ external_wrench=interaction free hand push wall
-    metrics: __init__=metrics.__init__ contact=metrics.contact effort family plant_error positioning reaching
-        rounding summary tracking
-    plants: __init__=plants.__init__ bullet bullet_links bullet_servers compiled_bullet compiled_friction
-        compiled_motion=compiled.motion computation=plants.computation decoupled flexible_config
-        flexible_joints=plants.flexible_joints friction friction_law kinematic motor_limits mujoco plant=plants.plant
-        rk4 rk4_flexible_links servo stepped_bullet whole_motion wrappers=touched
+    metrics: __init__=metrics.__init__ contact=metrics.contact effort family positioning reaching summary tracking
+    plants: __init__=plants.__init__ bullet bullet_engine bullet_links bullet_servers compiled_bullet compiled_friction
+        compiled_motion=compiled.motion computation=plants.computation decoupled flexibility=plants.flexibility
+        flexible_config flexible_joints=plants.flexible_joints friction friction_law kinematic motor_limits mujoco
+        plant=plants.plant rk4 rk4_flexible_links servo stepped_bullet whole_motion wrappers=touched
     plugins: features guard metric_units registry
     robots: __init__=robots.__init__ canonical description drawn elements file_extensions inertials
         inverse_kinematics joint_dynamics mismatch mjcf mjcf_files mjcf_motors mjcf_urdf model mounting
@@ -49,9 +51,8 @@ _TABLE = """
     schema: values
     sensing: __init__=sensing.__init__ encoders endpoint=sensing.endpoint force_torque joint_torque streams velocity
         wrench
-    simulation: assembly batch by_ticks calibration=calibration_job closed_loop=loop.closed_loop contact=loop.contact
-        drawn_loops loop=simulation recorder results run=job sensors
-    simulation/compiled: commands law loop_program loops
+    simulation: batch by_ticks calibration=calibration_job calibration_config=checked_calibration contact=loop.contact
+        loop=simulation recorder results run=job sensors
     symbolic: algebra arm bullet_step code engine expression maths=controllers.maths program regressor structure
         tangent vectors=compiled.vectors
     trajectories: __init__=trajectories.__init__ circle from_file geometry goal joint_motion=trajectories.joint_motion

@@ -23,8 +23,8 @@ from runner.store.seal import MEND, DamagedError, Stored, read_job, write_job
 if TYPE_CHECKING:
     import pandas as pd
 
-    from runner.config.judgement import Bound
     from runner.robots.model import RobotModel
+    from runner.schema.bound import Bound
     from runner.statistics.spec import Histories, Spec
 
 _QUOTES = re.compile(r"""["'\\]|[^ -~]""")  # without these, words end at spaces

@@ -120,12 +120,17 @@ def find_shards(outputs: Path, name: str) -> list[Path]:
     return sorted((outputs / "shards").glob(f"{name}.*parquet"))
 
 
+def lists_values(repetitions: int) -> bool:
+    """Return True if a record lists the values of each repetition, so that a shard stores them as columns."""
+    from runner.metrics.summary import MOST_LISTED  # all metrics, which only a writer needs
+
+    return repetitions <= MOST_LISTED
+
+
 def _row_of(run: Run) -> ShardRow:
     metrics = tuple((name, metric.unit) for name, metric in run.metrics.items())
     values = np.array([run.values(name) for name in run.metrics]).T if metrics else np.zeros((0, 0))
-    from runner.metrics.summary import MOST_LISTED  # all metrics, which only a writer needs
-
-    listed = len(values) <= MOST_LISTED
+    listed = lists_values(len(values))
     record = {key: value for key, value in run.record.items() if key != "metrics" or not listed}
     return ShardRow(outcome(run), json.dumps(run.config), run.urdf, encode_finite(record), metrics, values)
 

@@ -22,7 +22,7 @@ from runner.store.run import Run, open_run
 from runner.store.seal import DamagedError, digest, head, read_file, read_json, seal_text
 
 if TYPE_CHECKING:
-    from runner.config.judgement import Bound
+    from runner.schema.bound import Bound
     from runner.statistics.spec import Histories
 
 _FILE = "sweep.json"
@@ -247,7 +247,7 @@ def _read_question(folder: Path) -> str:
 def _read_spec(path: Path, content: Mapping[str, Any]) -> "tuple[dict[str, Bound], Histories]":
     if not content.keys() & {"spec", "history"}:
         return {}, {}
-    from runner.config.judgement import Bound
+    from runner.schema.bound import Bound
     from runner.statistics.spec import merge_histories
 
     try:

@@ -5,20 +5,19 @@ from collections.abc import Callable, Iterable, Iterator, Sequence
 import numpy as np
 
 from runner import store
+from runner.assembly.run_config import RunConfig
 from runner.base.errors import StoreError
 from runner.base.machine import this_machine
-from runner.config.run import RunConfig
 from runner.config.settings import RunSettings
-from runner.metrics.summary import MOST_LISTED
 from runner.plugins.discovery import added_parts
 from runner.plugins.metric_units import units_of
 from runner.simulation.batch import BatchSimulator, simulate_together
 from runner.simulation.provenance import command, job_provenance
 from runner.simulation.results import Collector
 from runner.store.seal import JsonTexts
-from runner.store.shards import ShardRow
-from runner.store.writing import record_texts
+from runner.store.shards import ShardRow, lists_values
 from runner.sweeps.deadline import TimeLimitError, deadline
+from runner.sweeps.records import record_texts
 from runner.sweeps.writer import ResultWriter, Rules, without_trace
 
 Named = tuple[str, Collector]
@@ -73,7 +72,7 @@ def make_together(
 
 
 def _fits(settings: RunSettings) -> bool:
-    return settings.repetitions <= MOST_LISTED and not settings.plant_error
+    return lists_values(settings.repetitions) and not settings.plant_error
 
 
 def _rows(runs: Iterable[Named], texts: JsonTexts, batcher: BatchSimulator) -> Iterator[ShardRow]:

@@ -9,11 +9,11 @@ import numpy as np
 from numpy.typing import NDArray
 
 from runner import store
+from runner.assembly.assemble import check_assembly
+from runner.assembly.run_config import RunConfig
+from runner.assembly.run_cost import memory_of_run
 from runner.base import progress
 from runner.base.errors import ConfigError
-from runner.config.limits import memory_of_run
-from runner.config.run import RunConfig
-from runner.simulation.assembly import check_assembly
 from runner.store.identity import json_text
 from runner.store.names import Names, Texts
 from runner.sweeps.differing import Resolved, is_one_arm, resolve

@@ -17,6 +17,7 @@ from numpy.typing import NDArray
 
 from runner.base.dotted_keys import dotted, leaves, split_override
 from runner.base.memory import Memory
+from runner.config.compose.units import key_unit
 from runner.store.run import Run
 from runner.store.seal import MEND, DamagedError, simulated_part
 
@@ -25,8 +26,11 @@ if TYPE_CHECKING:
 
 
 DISTANCE = "distance from start to goal"
-UNITS = {DISTANCE: "m"}
-"""Units of compared values that are not config keys."""
+
+
+def unit_of(key: str) -> str:
+    """Return the unit of a compared value: of the distance to the goal, or of a config key; "1" without one."""
+    return "m" if key == DISTANCE else key_unit(key)
 
 
 def resolve(config: Mapping[str, Any], step: float, home: Sequence[float] | None) -> Mapping[str, Any]:
@@ -136,6 +140,11 @@ class Difference:
     key: str
     axes: tuple[str, ...]
     values: Sequence[tuple[str, str]]
+
+    @property
+    def unit(self) -> str:
+        """Unit of the value; "1" without one."""
+        return unit_of(self.key)
 
 
 class Resolved:

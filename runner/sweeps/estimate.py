@@ -10,10 +10,10 @@ from typing import Literal
 import numpy as np
 from numpy.typing import NDArray
 
+from runner.assembly.validation import validate
 from runner.base.atomic import write_atomically
 from runner.base.quantities import format_duration
 from runner.config.composed import Composed
-from runner.config.validation import validate
 from runner.simulation.tick_time import PROBED_TICKS, seconds_per_tick, seconds_together
 from runner.store.seal import sealed_json
 from runner.sweeps.check import Checked

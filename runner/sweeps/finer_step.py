@@ -23,7 +23,7 @@ from runner.store.sweep import Sweep
 from runner.sweeps.drawn import draws_nothing
 
 if TYPE_CHECKING:
-    from runner.config.run import RunConfig
+    from runner.assembly.run_config import RunConfig
 
 DRAWS = 8
 """Number of first repetitions to repeat: the integration error varies far less than the random draws."""
@@ -71,7 +71,7 @@ def work_out(outputs: Path, runs: Iterable[Run]) -> None:
 def _made(run: Run) -> tuple[str, Mapping[str, FloatArray]] | None:
     """Return the reason if a run has no finer step, and its metrics on it; None if the run cannot be repeated."""
     # Imports of the simulator, which a comparison of runs with known errors does not need
-    from runner.config.validation import validate
+    from runner.assembly.validation import validate
     from runner.simulation.run import simulate_blocks, threads_allowed
     from runner.sweeps.rerun import checked_config
 
@@ -94,7 +94,7 @@ def _made(run: Run) -> tuple[str, Mapping[str, FloatArray]] | None:
 
 def _find_obstacle(config: "RunConfig") -> str:
     """Return the reason why a run has no finer step; "" if it has one."""
-    from runner.metrics.plant_error import COMPARED, PLANT, reason_not_comparable
+    from runner.caveats.integration_error import COMPARED, PLANT, reason_not_comparable
 
     kind = config.plant.kind
     if reason := reason_not_comparable(config.environment.kind):
@@ -104,7 +104,7 @@ def _find_obstacle(config: "RunConfig") -> str:
 
 def _finer(given: Mapping[str, Any], config: "RunConfig") -> dict[str, Any]:
     """Return the config of the same run on a finer step, with only the first repetitions."""
-    from runner.metrics.plant_error import COMPARED, on_runge_kutta
+    from runner.caveats.integration_error import COMPARED, on_runge_kutta
 
     if config.plant.kind in COMPARED:
         resolved = on_runge_kutta(given)

@@ -7,15 +7,15 @@ from pathlib import Path
 from typing import Any, Generic, TypeVar
 
 from runner import store
+from runner.assembly.run_config import RunConfig
+from runner.assembly.run_cost import check_cpu_time
+from runner.assembly.validation import validate
 from runner.base import progress
 from runner.base.ticks import counter
-from runner.config.calibration import CalibrationConfig, validate_calibration
 from runner.config.compose.compose import compose
 from runner.config.composed import CALIBRATION, Composed
-from runner.config.limits import check_cpu_time
-from runner.config.run import RunConfig
-from runner.config.validation import validate
 from runner.simulation.calibration import TICKS, simulate_calibration
+from runner.simulation.calibration_config import CalibrationConfig, validate_calibration
 from runner.simulation.results import RunResult
 from runner.simulation.run import simulate_run, threads_allowed
 from runner.simulation.tick_time import seconds_per_tick
@@ -90,7 +90,9 @@ class RunJob(Job[RunResult, store.Run]):
 
     def write(self, outputs: Path, result: RunResult) -> store.Run:
         """Store the run."""
-        return store.write_run(outputs, self.name, result)
+        from runner.sweeps.records import write_run
+
+        return write_run(outputs, self.name, result)
 
 
 class CalibrationJob(Job[dict[str, Any], store.Calibration]):

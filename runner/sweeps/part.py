@@ -10,16 +10,15 @@ from typing import Any, cast
 import numpy as np
 
 from runner import store
+from runner.assembly.arms import build_robot, read_outline
 from runner.base import progress
 from runner.base.errors import ConfigError
 from runner.base.memory import Memory
-from runner.config.arms import build_robot, read_outline
 from runner.config.composed import Composed
 from runner.config.groups import read_groups
 from runner.config.limits import split_part
 from runner.config.parsing import Problems, require
 from runner.config.settings import RunSettings
-from runner.sensing.force_torque import ForceTorqueConfig
 from runner.store.axes import Axes
 from runner.store.names import Names, Texts
 from runner.store.sweep import Sweep, without_keys
@@ -171,8 +170,7 @@ def _names(composed: Composed, block: Block) -> Texts:
     outline = problems.recall(read_outline, groups.get("robot"), composed.config_dirs)
     problems.report()
     settings, sensor = cast(RunSettings, groups["settings"]), groups.get("wrist_sensor")
-    made_of = (outline, settings.gravity, *([sensor] if isinstance(sensor, ForceTorqueConfig) else []))
-    arm = problems.recall(build_robot, *made_of)
+    arm = problems.recall(build_robot, outline, settings.gravity, sensor)
     problems.report()
     seeds = block.seeds if block.seeds is not None else [cast(int, composed.resolved["seed"])]
     return store.run_hashes(composed.resolved, require(arm).urdf, seeds).texts

@@ -12,12 +12,12 @@ from collections.abc import Iterator, Mapping, Sequence
 from pathlib import Path
 from typing import Any
 
+from runner.assembly.versions import versions
 from runner.base import progress
 from runner.base.bounded_json import decode_json
 from runner.base.errors import ConfigError, RunnerError, TemporaryError
 from runner.base.limits import RECORD, read_text
 from runner.base.sanitize import few, one_line, quoted
-from runner.simulation.provenance import versions
 from runner.store.physics import physics_digest
 
 _ADDRESS = re.compile(r"(\w+://)?[^\s/]+:\d+")

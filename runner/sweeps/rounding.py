@@ -5,7 +5,7 @@ from dataclasses import dataclass, field
 
 from runner.base import progress
 from runner.base.errors import RunnerError
-from runner.metrics.rounding import SENSITIVE
+from runner.caveats.rounding_growth import SENSITIVE
 from runner.store.run import Run
 from runner.store.sweep import Sweep
 

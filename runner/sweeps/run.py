@@ -15,6 +15,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from runner import store
+from runner.assembly.dependent_keys import depends, idle_keys
+from runner.assembly.run_cost import check_cpu_time, check_memory_together
+from runner.assembly.validation import validate
 from runner.base import progress
 from runner.base.atomic import refuse_links, remove_leftovers
 from runner.base.errors import ConfigError, StoreError, TemporaryError
@@ -22,9 +25,7 @@ from runner.base.sanitize import one_line
 from runner.config.compose.composer import Composer
 from runner.config.compose.given_keys import given_keys
 from runner.config.composed import CALIBRATION
-from runner.config.dependent_keys import depends, idle_keys
-from runner.config.limits import SweepConfig, check_cpu_time, check_memory_together
-from runner.config.validation import validate
+from runner.config.limits import SweepConfig
 from runner.plugins.discovery import has_users_parts, in_use
 from runner.store.finished import FINER
 from runner.store.kinds import note

@@ -12,19 +12,19 @@ from pathlib import Path
 from typing import Any, TypeVar, cast
 
 from runner import store
+from runner.assembly.run_config import RunConfig
 from runner.base.engines import quiet_environment
 from runner.base.errors import DISK_FULL, RunnerError, StoreError, describe_write_error, user_place
 from runner.base.ticks import report_ticks
 from runner.config.composed import CALIBRATION, Composed
-from runner.config.run import RunConfig
 from runner.plugins.discovery import use_only
 from runner.simulation.provenance import job_provenance
 from runner.simulation.results import RunResult
 from runner.store.shards import find_shards, outcome, read_outcomes, write_shard
-from runner.store.writing import cut_short_record
 from runner.sweeps.batch import make_together
 from runner.sweeps.deadline import TimeLimitError, deadline
 from runner.sweeps.job import CalibrationJob, RunJob, check_job
+from runner.sweeps.records import cut_short_record
 from runner.sweeps.writer import ResultWriter, Rules, without_trace, write_failure, write_log
 
 Made = TypeVar("Made")

@@ -11,7 +11,7 @@ from runner.base.atomic import write_atomically
 from runner.config.limits import SweepConfig
 from runner.simulation.results import RunResult
 from runner.store.shards import ShardRow, outcome, write_shard
-from runner.store.writing import make_record
+from runner.sweeps.records import make_record, write_run
 
 TraceKeeping = Literal["all", "sample", "failed", "never"]
 
@@ -103,7 +103,7 @@ class ResultWriter:
             self._outcomes.append(outcome(made) if isinstance(made, store.Run) else made)
             return bool(self._outcomes[-1].failure)
         self._wait()
-        self._written = self._disk.submit(store.write_run, self._rules.outputs, name, made)
+        self._written = self._disk.submit(write_run, self._rules.outputs, name, made)
         return made.failure is not None
 
     def put_rows(self, rows: Sequence[ShardRow]) -> None:

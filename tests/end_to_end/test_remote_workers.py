@@ -10,9 +10,9 @@ from distributed import Client
 from support.patience import PATIENCE, wait_until
 
 from runner import store
+from runner.assembly.versions import versions
 from runner.base.errors import RunnerError, TemporaryError
 from runner.plugins.discovery import use_plugins
-from runner.simulation.provenance import versions
 from runner.sweeps import remote, run
 from runner.sweeps.run import Engine
 

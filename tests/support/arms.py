@@ -3,10 +3,10 @@
 import copy
 import functools
 
+from runner.assembly.run_config import RunConfig
+from runner.assembly.validation import validate
 from runner.config.compose.compose import compose
 from runner.config.composed import Composed
-from runner.config.run import RunConfig
-from runner.config.validation import validate
 from runner.controllers.operational_space.whole_body import WholeBodyLaw
 from runner.robots.description import find_urdf, read_urdf
 from runner.robots.model import RobotModel

@@ -6,8 +6,8 @@ import numpy as np
 import pinocchio as pin
 import yaml
 
+from runner.assembly.validation import validate
 from runner.config.compose.compose import compose
-from runner.config.validation import validate
 from runner.identification.parameters import base_sums
 from runner.recordings.equations import motion_of
 

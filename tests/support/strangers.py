@@ -9,8 +9,8 @@ from pathlib import Path
 
 import pytest
 
+from runner.assembly.validation import validate
 from runner.config.compose.compose import compose
-from runner.config.validation import validate
 from runner.doctor import examination
 from runner.doctor.config_folder import write_folder
 

@@ -2,9 +2,9 @@
 
 from collections.abc import Iterator
 
+from runner.assembly.assemble import assemble, assemble_program
+from runner.assembly.validation import validate
 from runner.config.compose.compose import compose
-from runner.config.validation import validate
-from runner.simulation.assembly import assemble, assemble_program
 from tools.laws import LAWS
 
 _CASES = {

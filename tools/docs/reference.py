@@ -14,23 +14,24 @@ from typing import Any, get_origin
 
 import yaml
 
+from runner.assembly.run_config import RunSettings
 from runner.base.paths import conf_dir
 from runner.calibration import CALIBRATIONS
 from runner.cli import commands
-from runner.cli.main import COMMON, build_parser
+from runner.cli.parser import COMMON, build_parser
 from runner.config.calibration import CalibrationSettings
 from runner.config.compose.files import group_options, place_in
 from runner.config.groups import GROUPS
 from runner.config.json_schema import meanings
-from runner.config.judgement import Bound, CaveatsConfig
+from runner.config.judgement import CaveatsConfig
 from runner.config.limits import SweepConfig
 from runner.config.robot import OneArmConfig, StageConfig
-from runner.config.run import RunSettings
 from runner.controllers.joint_space.joint_law import JointLawConfig
 from runner.papers.study.chapters import SHARED
 from runner.papers.study.code import public_functions
 from runner.plugins.metric_units import families
 from runner.plugins.registry import Kinds
+from runner.schema.bound import Bound
 from runner.schema.model import StrictModel, nested_model
 from runner.schema.units import WRITTEN
 from tools.docs.allowed_values import describe

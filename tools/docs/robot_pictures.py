@@ -8,9 +8,9 @@ import pinocchio as pin
 from matplotlib.figure import Figure
 from scipy.spatial import ConvexHull
 
+from runner.assembly.validation import validate
 from runner.base.arrays import FloatArray
 from runner.config.compose.compose import compose
-from runner.config.validation import validate
 from runner.reporting.charts.canvas import GREY, INK, Camera, circle, drawing, scene, write
 from runner.reporting.document import Body
 from runner.reporting.playback import playback_bodies

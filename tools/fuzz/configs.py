@@ -16,14 +16,14 @@ from pathlib import Path
 from random import Random
 from typing import Any, Literal
 
+from runner.assembly.validation import validate
 from runner.base.errors import RunnerError
 from runner.config.compose.compose import compose
 from runner.config.compose.files import group_options, groups
 from runner.config.composed import Composed
-from runner.config.validation import validate
 from runner.simulation.run import simulate_run
 from runner.store import run_hash
-from runner.store.writing import make_record
+from runner.sweeps.records import make_record
 from tools.fuzz.files import experiment
 from tools.fuzz.grammar import keys_of, mutated, override
 

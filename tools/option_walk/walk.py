@@ -11,9 +11,9 @@ from typing import Any, Literal, NamedTuple
 
 import numpy as np
 
+from runner.assembly.validation import validate
 from runner.base.errors import ConfigError
 from runner.config.compose.compose import compose
-from runner.config.validation import validate
 from runner.plants import PLANTS
 from runner.simulation.run import simulate_run
 from runner.store import run_hash

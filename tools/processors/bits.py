@@ -18,8 +18,8 @@ from runner.base.engines import quiet_environment
 
 quiet_environment()
 
+from runner.assembly.validation import validate  # noqa: E402
 from runner.config.compose.compose import compose  # noqa: E402 - after the environment
-from runner.config.validation import validate  # noqa: E402
 from runner.simulation.run import measure_rounding, simulate_run  # noqa: E402
 from tools.processors.kernels import environment, use_llvm_cpu  # noqa: E402
 

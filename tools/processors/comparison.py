@@ -6,7 +6,7 @@ from concurrent.futures import ThreadPoolExecutor
 from itertools import zip_longest
 from typing import Any
 
-from runner.metrics.rounding import SENSITIVE
+from runner.caveats.rounding_growth import SENSITIVE
 from tools.processors.bits import growth, make_under
 from tools.processors.kernels import KERNELS, not_emulated
 from tools.processors.runs import matrix

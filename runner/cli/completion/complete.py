@@ -20,7 +20,7 @@ from runner.base.errors import RunnerError, nearest
 from runner.cli import commands
 from runner.cli.arguments import Names, Parser, Stored
 from runner.cli.completion.overrides import Typed, metric_names, override_words
-from runner.cli.main import build_parser
+from runner.cli.parser import build_parser
 from runner.store.kinds import KINDS, WORD, Kind
 
 _MOST = 1000  # words

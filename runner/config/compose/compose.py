@@ -66,7 +66,7 @@ def from_hydra(
         raise explain(error, config_dirs) from None
     problems = list(_strange_keys(resolved))
     if config_dirs:
-        from runner.config.arms import mixed_arms  # for few configs
+        from runner.config.robot_files import mixed_arms  # for few configs
 
         problems += mixed_arms(resolved, choices.get("robot", ""), config_dirs)
     if problems:

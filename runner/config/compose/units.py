@@ -47,8 +47,8 @@ def to_si(resolved: dict[str, object], config_dirs: Sequence[Path] = ()) -> None
 
 def _sliding_joints(resolved: Mapping[str, object], config_dirs: Sequence[Path]) -> Mapping[str, Mapping[str, bool]]:
     """Return by stage and joint True for a prismatic joint; empty for a robot whose files cannot be read."""
-    from runner.config.arms import sliding_joints
     from runner.config.parsing import group_of, parse_robot
+    from runner.config.robot_files import sliding_joints
 
     try:
         return sliding_joints(parse_robot(group_of("robot", resolved)), config_dirs)

@@ -28,11 +28,11 @@ from pathlib import Path
 
 import numpy as np
 
+from runner.assembly.validation import validate
 from runner.base.arrays import FloatArray
 from runner.base.errors import RunnerError, nearest
 from runner.base.paths import conf_dir
 from runner.config.compose.compose import compose
-from runner.config.validation import validate
 from runner.papers.audit.derivations import (
     Derivations,
     Symbols,

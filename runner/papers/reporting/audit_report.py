@@ -4,6 +4,7 @@ import math
 from collections.abc import Iterable, Mapping, Sequence
 from datetime import UTC, datetime
 
+from runner.assembly.versions import versions
 from runner.base import progress
 from runner.base.data_file import line_of
 from runner.base.machine import this_machine
@@ -215,6 +216,6 @@ def _provenance() -> Provenance:
             ("commit", provenance.commit() or "none (installed package)"),
             ("configurations", f"{SAMPLES}, seed 0"),
             ("machine", this_machine().text),
-            *provenance.versions().items(),
+            *versions().items(),
         )
     )

@@ -8,11 +8,12 @@ from typing import Any
 
 import numpy as np
 
+from runner.assembly.assemble import check_assembly
+from runner.assembly.run_config import RunConfig
+from runner.assembly.validation import validate
 from runner.base.errors import ConfigError, RunnerError
 from runner.config.compose.compose import compose
 from runner.config.composed import Composed
-from runner.config.run import RunConfig
-from runner.config.validation import validate
 from runner.controllers import CONTROLLERS
 from runner.papers.study.code import UserPlugin
 from runner.papers.study.estimate import Amount, counted, estimate_all, planned
@@ -21,7 +22,6 @@ from runner.papers.study.items import Way
 from runner.papers.study.study import Study
 from runner.papers.study.tune import read_number
 from runner.papers.study.tunings import Tuning, key_of, without_gains
-from runner.simulation.assembly import check_assembly
 from runner.simulation.run import simulate_repetition
 from runner.simulation.tick_time import PROBED_TICKS
 from runner.store import simulated_part

@@ -15,7 +15,8 @@ from runner.reporting.sweep.subject import choose, main_metrics
 from runner.statistics.conclusion import larger_median
 from runner.store.axes import axes_of, find_axis
 from runner.store.finished import Finished
-from runner.store.kinds import kind_of, open_stored, outputs_of
+from runner.store.kinds import kind_of, outputs_of
+from runner.store.opening import open_stored
 from runner.store.run import Run
 from runner.store.sweep import Sweep
 from runner.sweeps.challenge.case import own_overrides

@@ -39,9 +39,10 @@ from runner.reporting.document import (
 from runner.reporting.markup import literal
 from runner.reporting.metric_titles import capital, title, whole_metrics
 from runner.reporting.sentences import sentences, short_table
-from runner.reporting.sweep.subject import MOST_METRICS, key_label, main_metrics, shorten, spans_decades
+from runner.reporting.sweep.subject import MOST_METRICS, main_metrics, shorten, spans_decades
 from runner.reporting.table import numbers
 from runner.reporting.words import join_values
+from runner.sweeps.differing import unit_of
 from runner.sweeps.measurements import Measurements
 
 _MOST_CHARACTERS = 36  # of the names of all cells below a panel
@@ -160,7 +161,12 @@ def _difference_tables(found: SweepComparison) -> list[Block]:
         more = f" {left} more differ." if left > 0 else ""
         caption = f"All resolved values that differ in the cells that both have.{more}"
         rows = [
-            [key_label(value.key), shorten(value.a), shorten(value.b), value.cells or "all cells"]
+            [
+                label_with_unit(value.key, unit_of(value.key)),
+                shorten(value.a),
+                shorten(value.b),
+                value.cells or "all cells",
+            ]
             for value in values[:_MOST_ROWS]
         ]
         blocks.append(Table(caption, ["key", a, b, "at"], rows))

@@ -13,11 +13,12 @@ from runner.reporting.document import Block, Document, Notice, Section, Table
 from runner.reporting.markup import literal
 from runner.reporting.metric_titles import title, whole_metrics
 from runner.reporting.overlaid_runs import Level, overlaid
-from runner.reporting.run_report import changed_keys, config_blocks, provenance, run_blocks, run_name
+from runner.reporting.run_report import config_blocks, provenance, run_blocks, run_name
 from runner.reporting.sentences import sentences, short_table
 from runner.reporting.spec_blocks import spec_of_several
 from runner.reporting.table import numbers
 from runner.store import Run
+from runner.sweeps.changes import changed_keys
 from runner.sweeps.measurements import measure_run
 
 _MOST_CURVES = 8  # runs in one panel

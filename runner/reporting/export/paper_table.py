@@ -111,7 +111,7 @@ def of_sweep(
         for row in range(len(samples))
     ]  # fmt: skip
     header = [
-        *(key_label(axis.name) for axis in rows.axes),
+        *(key_label(axis) for axis in rows.axes),
         *(Column(title(name), "number", rows.units[name]) for name in names),
         *(numbers("n") if differ else []),
     ]

@@ -7,7 +7,7 @@ from itertools import combinations
 import numpy as np
 from numpy.typing import NDArray
 
-from runner.base.quantities import with_powers
+from runner.base.quantities import label_with_unit, with_powers
 from runner.reporting.charts.figure import spaced_indices
 from runner.reporting.document import Block, Notice, Origin, Section, Table, Text
 from runner.reporting.markup import literal
@@ -35,7 +35,7 @@ def axes_section(subject: Subject, command: str) -> Section:
     for axis in subject.axes:
         names = axis.texts
         shown = names if len(names) <= _MOST_VALUES else [*names[: _MOST_VALUES - 2], "...", names[-1]]
-        rows.append([key_label(axis.name), str(len(names)), ", ".join(shown)])
+        rows.append([key_label(axis), str(len(names)), ", ".join(shown)])
     blocks: list[Block] = []
     cells = len(measurements.hashes)
     if rows:
@@ -78,7 +78,7 @@ def _also_differs(subject: Subject) -> list[Block]:
     for difference in subject.measurements.differences[:_MOST_ROWS]:
         values = [f"{levels}: {shorten(text)}" if levels else shorten(text) for levels, text in difference.values]
         shown = values if len(values) <= _MOST_PLACES else [*values[: _MOST_PLACES - 2], "...", values[-1]]
-        label = key_label(difference.key)
+        label = label_with_unit(difference.key, difference.unit)
         rows.append([label, ", ".join(difference.axes) or "none", "; ".join(shown)])
     left = [difference.key for difference in subject.measurements.differences[_MOST_ROWS:]]
     if not rows:
@@ -123,7 +123,7 @@ def _failure_map(subject: Subject, failed: NDArray[np.bool_]) -> list[Block]:
         [down.text(row), *(_causes(causes[(down.level == row) & (across.level == column)]) for column in columns)]
         for row in range(len(down.values))
     ]
-    header = [key_label(down.name), *(f"{across.name}={text}" for text in across.texts)]
+    header = [key_label(down), *(f"{across.name}={text}" for text in across.texts)]
     caption = literal(f"Causes of failure by {down.name} and {across.name}; none: every run finished.")
     return [Table(caption, header, rows)]
 

@@ -6,15 +6,16 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from runner.base.errors import RunnerError
 from runner.base.quantities import quantity
-from runner.config.judgement import Bound
 from runner.reporting.answers import Answer
 from runner.reporting.metric_titles import title
 from runner.reporting.sweep.question import find_answers
 from runner.reporting.sweep.spec import find_failing
 from runner.reporting.sweep.subject import Subject
 from runner.reporting.table import Table, numbers
-from runner.statistics.conclusion import ALPHA, larger_median
+from runner.schema.bound import Bound
+from runner.statistics.conclusion import ALPHA, SHARE, larger_median
 
 PILOT = 8
 """Repetitions of a pilot."""
@@ -45,6 +46,16 @@ class Needed:
     @property
     def _rank(self) -> float:
         return math.inf if self.repetitions is None else self.repetitions
+
+
+def check_share(share: float) -> None:
+    """Check that a difference can be shown, as a share of the larger median.
+
+    Raises:
+        RunnerError: if it is not above 0.02 and at most 1.
+    """
+    if not SHARE < share <= 1.0:
+        raise RunnerError(f"share: cannot be shown ({share!r}). Allowed: above {SHARE:g}, up to 1.")
 
 
 def count_differences(subject: Subject, share: float) -> list[Needed]:

@@ -133,4 +133,4 @@ def axis_panel(title: str, axis: Axis, y_label: str, series: list[Series], y: Fl
     least = EQUAL * float(np.abs(drawn).max(initial=0.0))
     close = drawn.size and np.ptp(drawn) < least  # such differences are not to fill the panel
     y_range = widen_range(float(drawn.min()), float(drawn.max()), least) if close else None
-    return Panel(title, key_label(axis.name), y_label, series, x_log, spans_decades(y), y_range=y_range, x_names=names)
+    return Panel(title, key_label(axis), y_label, series, x_log, spans_decades(y), y_range=y_range, x_names=names)

@@ -115,8 +115,8 @@ def _map(subject: Subject, of: Sequence[FloatArray], x: Axis, y: Axis, cells: Se
     pointed = [some[0] for some in members] if single and len(statuses) <= _MOST_POINTED else []
     return Map(
         title,
-        key_label(x.name),
-        key_label(y.name),
+        key_label(x),
+        key_label(y),
         x.texts,
         y.texts,
         values,

@@ -5,7 +5,7 @@ from collections.abc import Sequence
 import numpy as np
 
 from runner.base.errors import RunnerError
-from runner.base.quantities import format_range
+from runner.base.quantities import format_range, label_with_unit
 from runner.base.sanitize import few
 from runner.reporting.answers import EXPLAINED, HEADER, PAIRS, Answer
 from runner.reporting.charts.figure import spaced_indices
@@ -15,10 +15,11 @@ from runner.reporting.document import Block, Curves, Items, Section, Table, Text
 from runner.reporting.markup import literal
 from runner.reporting.metric_titles import capital, first_screen, title
 from runner.reporting.sentences import sentences, short_table, unanswerable
-from runner.reporting.sweep.subject import Subject, key_label
+from runner.reporting.sweep.subject import Subject
 from runner.reporting.table import numbers
 from runner.statistics import SMALLEST_SAMPLE
 from runner.store.axes import Axis, group_cells
+from runner.sweeps.differing import unit_of
 from runner.sweeps.question import find_question
 
 _CHECKS = {
@@ -76,7 +77,8 @@ def _figure(answers: Sequence[Answer]) -> Curves:
             continue
         names = [" - ".join(reversed(one.names)) if several else ", ".join(one.at.values()) or "all" for one in shown]
         kept = spaced_indices(len(shown), _MOST_COLUMNS)
-        across = "compared" if several else ", ".join(map(key_label, next((one.at for one in shown if one.at), {})))
+        levels = next((one.at for one in shown if one.at), {})
+        across = "compared" if several else ", ".join(label_with_unit(name, unit_of(name)) for name in levels)
         panels.append(difference_panel([(names[place], shown[place]) for place in kept], across))
     first, second = answers[0].names
     what = "of the second and the first" if several else f"{second} minus {first}"

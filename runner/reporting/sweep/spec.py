@@ -8,13 +8,13 @@ import numpy as np
 from numpy.typing import NDArray
 
 from runner.base.arrays import FloatArray
-from runner.config.judgement import Bound
 from runner.reporting.charts.figure import spaced_indices
 from runner.reporting.document import Block, Curves, Map, Maps, Notice, Panel, Section, Series, Table, Text
 from runner.reporting.markup import literal
 from runner.reporting.spec_blocks import RULE, bound_text, late_text, probability
 from runner.reporting.sweep import maps
 from runner.reporting.sweep.subject import Subject, key_label, spans_decades
+from runner.schema.bound import Bound
 from runner.statistics.spec import bounds_of, merge_histories, settings, within
 from runner.store import Sweep
 from runner.store.axes import Axis
@@ -138,7 +138,7 @@ def _curve(one: Failing, axis: Axis) -> Curves:
         series.append(Series(_FEW, x[few], pooled.share[few], "points"))
     panel = Panel(
         "",
-        key_label(axis.name),
+        key_label(axis),
         _LABEL,
         series,
         numbers is not None and spans_decades(numbers),
@@ -180,7 +180,7 @@ def _row(one: Failing, x: Axis, y: Axis, cells: NDArray[np.intp], start: str) ->
     ]
     unmarked = np.zeros(shape, dtype=bool)
     drawn = (("share that failed", pooled.share, few), ("upper end of the 95 % interval", high, unmarked))
-    names = (key_label(x.name), key_label(y.name), x.texts, y.texts)
+    names = (key_label(x), key_label(y), x.texts, y.texts)
     return [Map(start + title, *names, values.reshape(shape), marks, hints=hints) for title, values, marks in drawn]
 
 

@@ -10,18 +10,17 @@ from numpy.typing import NDArray
 
 from runner.base.arrays import FloatArray
 from runner.base.quantities import label_with_unit, quantity
-from runner.config.compose.units import key_unit
 from runner.reporting.charts import palette
 from runner.reporting.charts.figure import spaced_indices
 from runner.reporting.metric_titles import COSTS, metric_label, title, whole_metrics
 from runner.store.axes import Axis
-from runner.sweeps.differing import UNITS
 from runner.sweeps.measurements import Measurements
 from runner.sweeps.question import find_question
 from runner.sweeps.table import median_ends
 
 if TYPE_CHECKING:
     from runner.statistics import EffectAnalysis
+    from runner.sweeps.tuning.key import Key
 
 MOST_METRICS = 5
 """Metrics that a report compares if the user names none."""
@@ -142,9 +141,9 @@ def group_levels(axis: Axis) -> NDArray[np.intp]:
     return axis.level * MOST_GROUPS // count if count > MOST_GROUPS else axis.level
 
 
-def key_label(name: str) -> str:
-    """Return a key of a config, such as that of an axis, with its unit, as on the axis of a figure."""
-    return label_with_unit(name, UNITS.get(name) or key_unit(name))
+def key_label(key: "Axis | Key") -> str:
+    """Return a swept or tuned key with its unit, as on the axis of a figure."""
+    return label_with_unit(key.name, key.unit)
 
 
 def shorten(text: str, longest: int = _LONGEST) -> str:

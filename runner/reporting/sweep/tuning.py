@@ -11,7 +11,6 @@ import numpy as np
 
 from runner.base.arrays import FloatArray
 from runner.base.quantities import number, quantity
-from runner.config.compose.units import key_unit
 from runner.plugins.metric_units import units
 from runner.reporting.answers import CHOSEN, Answer
 from runner.reporting.challenge.beside import scope_line
@@ -210,7 +209,7 @@ def _abstract(trials: Trials) -> str:
 def _what(trials: Trials) -> Section:
     rows = [
         [
-            key_label(key.name),
+            key_label(key),
             number(key.low),
             number(key.high),
             "logarithmic" if key.log else "linear",
@@ -291,7 +290,7 @@ def _keys(trials: Trials) -> Section:
             x = trials.params(key)
             series = [trials.points("trials", x, y, trials.good), trials.points("chosen", x, y, trials.best)]
             limits, logs = (key.low, key.high), (key.log, spans_decades(y[trials.good]))
-            panels.append(Panel("", key_label(key.name), _label(objective), series, *logs, limits))
+            panels.append(Panel("", key_label(key), _label(objective), series, *logs, limits))
     return Section("Keys", [Curves("Good trials over the range of each key.", panels), _importance(trials)])
 
 
@@ -325,8 +324,7 @@ def _chosen(trials: Trials, runs: dict[int, Run]) -> Section:
 def _trial(trials: Trials, place: int, run: Run) -> list[Block]:
     params = trials.tuning.trials[place].params
     rows = [
-        [key_label(key.name), number(params[key.name]), f"{number(key.low)} to {number(key.high)}"]
-        for key in trials.keys
+        [key_label(key), number(params[key.name]), f"{number(key.low)} to {number(key.high)}"] for key in trials.keys
     ]
     goals = [objective.metric for objective in trials.objectives]
     names = dict.fromkeys([*goals, *(name for name in run.metrics if name in units())])
@@ -345,7 +343,7 @@ def _all_runs(trials: Trials, sweep: Sweep, made: list[int], measurements: Measu
     columns = [
         ("trial", "1", np.array(made, dtype=float)),
         *(next(column for column in metrics if column[0] == name) for name in goals),
-        *((key.name, key_unit(key.name), trials.params(key)[made]) for key in trials.keys),
+        *((key.name, key.unit, trials.params(key)[made]) for key in trials.keys),
         *(column for column in metrics if column[0] not in goals),
     ]
     address = f"{os.path.relpath(sweep.outputs / 'runs', folder)}/"

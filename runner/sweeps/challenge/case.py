@@ -5,11 +5,11 @@ from dataclasses import dataclass
 from functools import cached_property
 from typing import Any
 
+from runner.assembly.run_config import RunConfig
 from runner.base.arrays import FloatArray
 from runner.base.dotted_keys import get
 from runner.base.errors import ConfigError
 from runner.config.compose.composer import Composer
-from runner.config.run import RunConfig
 from runner.store.axes import is_simulated
 from runner.sweeps.challenge.goals import other_goals
 from runner.sweeps.challenge.question import Question

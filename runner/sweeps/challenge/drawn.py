@@ -7,7 +7,7 @@ from numpy.typing import NDArray
 
 from runner.base.arrays import FloatArray
 from runner.base.dotted_keys import get
-from runner.config.judgement import Bound
+from runner.schema.bound import Bound
 from runner.statistics import compare_paired
 from runner.statistics.paired import Comparison
 from runner.statistics.scope import Tried

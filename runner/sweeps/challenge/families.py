@@ -7,7 +7,6 @@ from itertools import chain
 from typing import Any
 
 from runner.base.quantities import number
-from runner.plants import PLANTS
 from runner.store.axes import override_value
 from runner.sweeps.challenge.case import Case
 from runner.sweeps.challenge.goals import ends_of
@@ -58,7 +57,7 @@ class Family:
 
 def _engine(case: Case, value: Value) -> Change:
     kinds = {config.plant.kind for config in case.configs}
-    if any(PLANTS.commands(kind) != "torque" for kind in kinds):
+    if not all(config.takes_torques for config in case.configs):
         raise LeftOutError("the plant is not driven by torques")
     if kinds == {value}:
         raise LeftOutError("")
@@ -160,7 +159,7 @@ def _payload(case: Case, value: Value) -> Change:
 
 
 def _friction(case: Case, value: Value) -> Change:
-    if any(PLANTS.commands(config.plant.kind) != "torque" for config in case.configs):
+    if not all(config.takes_torques for config in case.configs):
         raise LeftOutError("the plant has no friction")
     found = case.values("plant.friction.coulomb")
     if any(found):

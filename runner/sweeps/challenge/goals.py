@@ -2,10 +2,10 @@
 
 import numpy as np
 
+from runner.assembly.run_config import RunConfig
 from runner.base.arrays import FloatArray
 from runner.base.dotted_keys import get
 from runner.base.errors import ConfigError
-from runner.config.run import RunConfig
 from runner.robots.inverse_kinematics import solve_tip_position
 from runner.robots.model import RobotModel
 from runner.robots.task_space import task_basis

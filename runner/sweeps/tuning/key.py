@@ -7,6 +7,7 @@ from typing import Any, Literal
 from hydra.core.override_parser.types import IntervalSweep, Override, RangeSweep
 
 from runner.base.errors import ConfigError
+from runner.config.compose.units import key_unit
 from runner.sweeps.swept import range_values
 
 RANGES = (
@@ -47,6 +48,11 @@ class Key:
             raise ConfigError(f"{self.name}: its range is empty, {self.low:g} to {self.high:g}; low must be below high")
         if self.log and self.low <= 0.0:
             raise ConfigError(f"{self.name}: on a logarithmic scale low must be above 0; found {self.low:g}")
+
+    @property
+    def unit(self) -> str:
+        """Unit of the key; "1" without one."""
+        return key_unit(self.name)
 
     @property
     def probes(self) -> tuple[float, ...]:

@@ -7,10 +7,10 @@ from dataclasses import replace
 import numpy as np
 
 from runner import store
+from runner.assembly.validation import validate
 from runner.base.errors import ConfigError
 from runner.config.compose.composer import Composer
 from runner.config.composed import Composed
-from runner.config.validation import validate
 from runner.sweeps.job import RunJob
 from runner.sweeps.plan import Grid
 from runner.sweeps.queue import Queue

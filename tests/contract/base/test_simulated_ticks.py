@@ -6,9 +6,9 @@ import numpy as np
 import pytest
 from support.patience import PATIENCE
 
+from runner.assembly.validation import validate
 from runner.base import ticks
 from runner.config.compose.compose import compose
-from runner.config.validation import validate
 from runner.simulation.run import simulate_run
 
 

@@ -14,7 +14,8 @@ from support.engines import ASKED
 from support.printed import without_caveats
 
 from runner.cli import commands
-from runner.cli.main import GUIDE, build_parser
+from runner.cli.main import GUIDE
+from runner.cli.parser import build_parser
 from runner.config.compose.files import groups
 from runner.store import open_sweep
 from runner.sweeps import job

@@ -7,7 +7,7 @@ from runner.base.former_names import FILES, OPTIONS
 from runner.base.former_names import TOPICS as FORMER_TOPICS
 from runner.cli.commands import OVERRIDES, names
 from runner.cli.list import TOPICS
-from runner.cli.main import build_parser
+from runner.cli.parser import build_parser
 
 
 @pytest.mark.parametrize(("former", "new"), FORMER_COMMANDS.items())

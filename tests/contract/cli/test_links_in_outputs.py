@@ -9,8 +9,7 @@ from support.engines import ASKED
 
 from runner.base.atomic import remove_leftovers
 from runner.base.errors import StoreError
-from runner.store.kinds import FILES, KINDS
-from runner.store.writing import prepare
+from runner.store.kinds import FILES, KINDS, prepare
 
 TASK = ("robot=macro", ASKED, "duration=0.05", "hydra.sweeper.workers=0")
 OLD = 0.0

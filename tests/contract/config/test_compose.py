@@ -2,11 +2,11 @@
 
 import pytest
 
+from runner.assembly.validation import validate
 from runner.base.errors import ConfigError
 from runner.base.paths import robots_dir
 from runner.config.compose.compose import compose
 from runner.config.compose.files import group_options
-from runner.config.validation import validate
 
 SMALL_ROBOT = """\
 # @package _global_

@@ -3,11 +3,11 @@
 import pytest
 
 import runner
+from runner.assembly.validation import validate
 from runner.base.errors import ConfigError
 from runner.base.former_names import KEYS, VALUES
 from runner.config.compose.compose import compose
 from runner.config.compose.files import group_options
-from runner.config.validation import validate
 
 OPTIONS = [(group, former, present) for group, names in VALUES.items() for former, present in names.items()]
 # A config that has the present key; one key is in two kinds.

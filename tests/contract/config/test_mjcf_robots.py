@@ -5,10 +5,10 @@ import yaml
 from support.mjcf_arms import CHAIN, written
 
 import runner
+from runner.assembly.validation import validate
 from runner.base.errors import ConfigError
 from runner.base.paths import robots_dir
 from runner.config.compose.compose import compose
-from runner.config.validation import validate
 from runner.reporting.playback import playback_bodies
 from runner.robots.model import RobotModel
 

@@ -2,10 +2,10 @@
 
 import pytest
 
+from runner.assembly.validation import validate
 from runner.base.errors import ConfigError
 from runner.config.compose.compose import compose
 from runner.config.compose.files import group_options
-from runner.config.validation import validate
 from runner.schema.model import absurd
 
 

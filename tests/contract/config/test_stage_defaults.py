@@ -4,11 +4,11 @@ import pytest
 import yaml
 
 import runner
+from runner.assembly.validation import validate
 from runner.base.errors import ConfigError
 from runner.base.paths import conf_dir
 from runner.config.compose.compose import compose
 from runner.config.robot import ArmConfig, OneArmConfig
-from runner.config.validation import validate
 
 DEFAULTS = yaml.safe_load((conf_dir() / "robot_defaults.yaml").read_text())["robot"]
 ONE_ARM = """\

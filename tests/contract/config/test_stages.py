@@ -3,10 +3,10 @@
 import pytest
 import yaml
 
+from runner.assembly.validation import validate
 from runner.base.errors import ConfigError
 from runner.base.paths import conf_dir
 from runner.config.compose.compose import compose
-from runner.config.validation import validate
 
 COMBINED = ("robot=combined", "noise=thesis", "torque_limits=thesis")
 SECOND_MINI = {

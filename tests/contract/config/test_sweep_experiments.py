@@ -5,10 +5,10 @@ import itertools
 import pytest
 import yaml
 
+from runner.assembly.validation import validate
 from runner.base.paths import conf_dir
 from runner.config.compose.compose import compose
 from runner.config.compose.files import group_options
-from runner.config.validation import validate
 
 NAMES = [name for name in group_options("experiment") if name.startswith("sweep/")]
 

@@ -6,11 +6,11 @@ import math
 import pytest
 from support import strangers
 
+from runner.assembly.validation import validate
 from runner.base.dotted_keys import get
 from runner.base.errors import ConfigError
 from runner.config.compose.compose import compose
 from runner.config.compose.units import as_numbers, to_si, with_numbers
-from runner.config.validation import validate
 from runner.store import run_hash
 
 MACRO = ("robot=macro", "trajectory=quintic")

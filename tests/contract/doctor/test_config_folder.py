@@ -9,11 +9,11 @@ from support import strangers
 from support.strangers import Y, Z
 
 import runner
+from runner.assembly.validation import validate
 from runner.base.errors import ConfigError, RunnerError
 from runner.base.paths import conf_dir
 from runner.config.compose.compose import compose
 from runner.config.compose.files import group_options
-from runner.config.validation import validate
 from runner.doctor.config_folder import write_folder
 from runner.doctor.examination import examine
 from runner.robots.description import find_urdf

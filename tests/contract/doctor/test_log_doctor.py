@@ -9,10 +9,10 @@ import pytest
 import yaml
 from support import log_files as made
 
+from runner.assembly.validation import validate
 from runner.base.errors import RunnerError
 from runner.base.paths import examples_dir
 from runner.config.compose.compose import compose
-from runner.config.validation import validate
 from runner.doctor.log import examine_log
 from runner.doctor.log_files import map_text
 from runner.recordings.files import read_table

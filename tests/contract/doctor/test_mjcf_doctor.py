@@ -6,9 +6,9 @@ from support import strangers
 from support.caveat_runs import found as caveats_found
 from support.mjcf_arms import CHAIN, disagreement, written
 
+from runner.assembly.validation import validate
 from runner.base.errors import ConfigError
 from runner.config.compose.compose import compose
-from runner.config.validation import validate
 from runner.doctor.config_folder import write_folder
 from runner.doctor.examination import examine
 

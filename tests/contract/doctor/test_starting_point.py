@@ -4,6 +4,7 @@ import numpy as np
 import pytest
 from support import strangers
 
+from runner.assembly.versions import versions
 from runner.doctor.postures import smallest_singular_values
 from runner.reporting.doctor_report import doctor_document
 from runner.robots.inverse_kinematics import solve_tip_position
@@ -47,4 +48,4 @@ def test_a_weak_arm_is_led_slowly():
 @pytest.mark.bullet
 @pytest.mark.parametrize("name", strangers.STRANGERS)
 def test_the_report_is_as_recorded(name, as_recorded):
-    as_recorded("reports", f"doctor on the {name}", doctor_document(strangers.read(name)))
+    as_recorded("reports", f"doctor on the {name}", doctor_document(strangers.read(name), versions()))

@@ -6,10 +6,10 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
+from runner.assembly.assemble import assemble
 from runner.base.errors import ConfigError, SimulationError
 from runner.controllers import CONTROLLERS, Loop, guard_law
 from runner.plugins.guard import Guarded
-from runner.simulation.assembly import assemble
 from runner.simulation.loop import simulate
 from runner.simulation.sensors import make_encoders
 

@@ -3,8 +3,8 @@
 import numpy as np
 import pytest
 
+from runner.assembly.validation import validate
 from runner.config.compose.compose import compose
-from runner.config.validation import validate
 from runner.controllers import CONTROLLERS
 from runner.simulation.run import simulate_repetition
 from tools.option_walk import judge_all

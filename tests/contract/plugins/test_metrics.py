@@ -9,8 +9,8 @@ import pytest
 from runner.base.errors import SimulationError
 from runner.metrics.summary import evaluate
 from runner.plugins import metric_units
-from runner.simulation.assembly import metric_context
 from runner.simulation.loop import simulate
+from runner.simulation.results import metric_context
 from runner.simulation.sensors import make_encoders
 
 

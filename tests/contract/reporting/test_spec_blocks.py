@@ -2,7 +2,6 @@
 
 import pytest
 
-from runner.config.judgement import Bound
 from runner.reporting import outline
 from runner.reporting.comparison.runs import runs_document
 from runner.reporting.document import Notice, Table
@@ -10,6 +9,7 @@ from runner.reporting.mathml import faulty
 from runner.reporting.render import write_report
 from runner.reporting.run_report import run_document
 from runner.reporting.spec_blocks import COLUMNS, bound_text
+from runner.schema.bound import Bound
 
 
 @pytest.fixture(scope="module")

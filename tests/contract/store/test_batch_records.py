@@ -13,7 +13,7 @@ from runner.store import Finished, Outcome
 from runner.store.run import Run
 from runner.store.seal import JsonTexts
 from runner.store.shards import METRIC, ShardRow, read_columns, read_outcomes, shard_name, write_shard
-from runner.store.writing import make_record, record_texts
+from runner.sweeps.records import make_record, record_texts
 
 NAMES = ("settling_time", "peak_torque_q1", "macro_overshoot", "energy", "saturation_fraction")
 TIMING = {"tick_time_median": None, "tick_time_p99": 1e-6, "wall_s": 0.25, "cpu_s": 0.5}

@@ -79,7 +79,7 @@ def test_the_engines_versions_count(monkeypatch):
     monkeypatch.setattr(identity, "simulated_part", lambda _: {"seed": 0})
     alone, other = (run_hash({"plant": {"kind": kind}}, "<robot/>") for kind in ("of a stranger", "of another"))
     assert alone == other != before
-    monkeypatch.setattr(identity, "installed_versions", lambda names: dict.fromkeys(names, "9.9"))
+    monkeypatch.setattr(identity, "engine_versions", lambda plant: {"pin": "9.9"})
     assert run_hash({"plant": {"kind": "of a third"}}, "<robot/>") != alone
 
 

@@ -6,11 +6,11 @@ import re
 import numpy as np
 import pytest
 
-from runner.config.judgement import Bound
 from runner.reporting.document import Notice
 from runner.reporting.outline import blocks
 from runner.reporting.spec_blocks import spec_rows
 from runner.reporting.sweep.report import sweep_document
+from runner.schema.bound import Bound
 from runner.store import judge_run, open_run, open_sweep, write_sweep
 from runner.sweeps.job import run
 

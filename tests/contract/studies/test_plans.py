@@ -6,9 +6,9 @@ import pytest
 from support.study_plans import RECORDED, planned
 from support.thin_plans import Overrides
 
+from runner.assembly.validation import validate
 from runner.base.engines import has_pybullet
 from runner.config.compose.compose import compose
-from runner.config.validation import validate
 from runner.papers.study.study import load_study
 
 

@@ -12,8 +12,8 @@ from support.precision_runs import error
 from support.study_plans import cut
 from support.thin_plans import make_runs
 
+from runner.assembly.validation import validate
 from runner.config.compose.compose import compose
-from runner.config.validation import validate
 from runner.papers.commands.reproduce import _chosen
 from runner.papers.studies.precision import measure, tried
 from runner.papers.studies.precision.exact import Adaptive, Collocation, energy_drift

@@ -7,8 +7,8 @@ import pytest
 from support.engines import ASKED
 from support.grids import plan_sweep
 
+from runner.assembly.validation import validate
 from runner.config.compose.compose import compose
-from runner.config.validation import validate
 from runner.simulation import tick_time
 from runner.simulation.tick_time import PROBED_TICKS, seconds_per_tick, seconds_together, warm_time
 from runner.sweeps import run

@@ -3,8 +3,8 @@
 import pytest
 from support.grids import plan_sweep
 
+from runner.assembly.validation import validate
 from runner.base.errors import ConfigError
-from runner.config.validation import validate
 from runner.store import run_hash
 from runner.sweeps.check import check
 

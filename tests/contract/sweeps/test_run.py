@@ -16,9 +16,9 @@ from support.grids import plan_sweep
 from support.patience import PATIENCE
 
 from runner import store
+from runner.assembly.compiled.loops import CompiledLoops
 from runner.base.errors import ConfigError, StoreError, TemporaryError
 from runner.config.limits import SweepConfig
-from runner.simulation.compiled.loops import CompiledLoops
 from runner.simulation.loop import InterpretedLoops
 from runner.sweeps import run as execution
 from runner.sweeps import work

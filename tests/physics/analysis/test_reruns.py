@@ -10,10 +10,10 @@ import numpy as np
 import pytest
 
 from runner.analysis import differences
+from runner.assembly.assemble import assemble_program
+from runner.assembly.validation import validate
 from runner.config.compose.compose import compose
-from runner.config.validation import validate
 from runner.metrics.summary import measure
-from runner.simulation.assembly import assemble_program
 from runner.simulation.batch import BatchSimulator, RunSpec
 from runner.store import simulated_part
 

@@ -5,9 +5,9 @@ import pytest
 
 from runner.base.errors import ConfigError
 from runner.calibration.weighing import even_postures
-from runner.config.calibration import validate_calibration
 from runner.config.compose.compose import compose
 from runner.simulation.calibration import LEVEL, judge
+from runner.simulation.calibration_config import validate_calibration
 
 KINDS = ("tool_centre_point", "tool_direction", "gravity")
 EXACT = ("calibration.repeatability=0", "wrist_sensor.noise=[0,0,0,0,0,0]", "wrist_sensor.resolution=[0,0,0,0,0,0]")

@@ -3,8 +3,8 @@
 import pytest
 
 from runner.base.engines import has_pybullet
+from runner.caveats.integration_error import ErrorEstimate, PlantError
 from runner.caveats.plant_error import PlantStep, caveat_of
-from runner.metrics.plant_error import ErrorEstimate, PlantError
 from runner.sweeps.job import run
 
 OWN = PlantStep("bullet", 1e-3, 0.01, 0.02)

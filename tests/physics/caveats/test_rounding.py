@@ -5,11 +5,11 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
+from runner.assembly.validation import validate
 from runner.base.trace import Failure
 from runner.caveats.rounding import caveat_of
+from runner.caveats.rounding_growth import SENSITIVE, STEP, RoundingGrowth, compare, move_start, relative_change
 from runner.config.compose.compose import compose
-from runner.config.validation import validate
-from runner.metrics.rounding import SENSITIVE, STEP, RoundingGrowth, compare, move_start, relative_change
 from runner.simulation.run import simulate_run
 
 LIMIT = 1e-6

@@ -7,10 +7,10 @@ from support.caveat_runs import found, signals
 from support.engines import ASKED
 from support.mjcf_arms import CHAIN, written
 
+from runner.assembly.validation import validate
 from runner.caveats.monitor import Watch
 from runner.caveats.setting import setting_of
 from runner.config.compose.compose import compose
-from runner.config.validation import validate
 from runner.robots.mjcf import read_mjcf
 
 

@@ -5,9 +5,9 @@ import pytest
 from support.arms import checked
 from support.motions import to_and_fro
 
+from runner.assembly.assemble import assemble
 from runner.controllers.torque_law import PinocchioArm
 from runner.plants.rk4 import Rk4
-from runner.simulation.assembly import assemble
 
 LINE = ("controller=adaptive", "controller.natural_frequency=30", "trajectory=joint_quintic", "plant=rk4")
 UNIFORM = ("controller.scale=uniform", "controller.adaptation_gain=0.5", "controller.friction=false")

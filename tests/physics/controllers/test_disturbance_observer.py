@@ -8,10 +8,10 @@ import pytest
 from support.arms import checked, last_of_each
 from support.physics import assert_same_motion
 
+from runner.assembly.assemble import assemble
+from runner.assembly.compiled import commands
 from runner.base.errors import ConfigError
 from runner.plants.rk4 import Rk4
-from runner.simulation.assembly import assemble
-from runner.simulation.compiled import commands
 from runner.simulation.loop import simulate
 from runner.simulation.sensors import make_encoders
 from runner.store import open_run

@@ -7,10 +7,10 @@ import pytest
 from support import strangers
 from support.motions import to_and_fro, write_joints
 
+from runner.assembly.assemble import assemble
 from runner.base.errors import ConfigError
 from runner.controllers.joint_space.iterative_learning import IterativeLearning, IterativeLearningConfig
 from runner.robots.model import RobotModel
-from runner.simulation.assembly import assemble
 from runner.simulation.loop import simulate
 from runner.simulation.sensors import make_encoders
 from runner.sweeps.job import run

@@ -5,8 +5,8 @@ import pytest
 from support.arms import checked
 from support.motions import to_and_fro, write_joints
 
+from runner.assembly.assemble import assemble
 from runner.plants.rk4 import Rk4
-from runner.simulation.assembly import assemble
 
 # rms of the norm of the joint errors in mrad: of an exact model, of masses 0.8 of the true ones with friction, and with
 # noise of the encoders, too. No K of the sliding law is printed; 1.3 phi omega_n diag M gives its error.

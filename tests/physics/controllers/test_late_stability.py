@@ -3,6 +3,7 @@
 import numpy as np
 import pytest
 
+from runner.assembly.assemble import assemble
 from runner.controllers.stability import (
     delay_limit,
     force_loop_radius,
@@ -10,7 +11,6 @@ from runner.controllers.stability import (
     miss_radius,
     pattern_limit,
 )
-from runner.simulation.assembly import assemble
 from runner.simulation.loop import simulate
 from runner.simulation.sensors import make_sensors
 

@@ -7,11 +7,11 @@ import numpy as np
 import pytest
 from support.arms import checked
 
+from runner.assembly.assemble import assemble
 from runner.base.errors import ConfigError
 from runner.config.compose.compose import compose
 from runner.controllers.notch import Notch
 from runner.controllers.torque_filter import AnyLaw, FilteredLaw
-from runner.simulation.assembly import assemble
 from runner.simulation.loop import simulate
 from runner.simulation.sensors import make_encoders
 from runner.store import simulated_part

@@ -5,9 +5,9 @@ import dataclasses
 import numpy as np
 import pytest
 
+from runner.assembly.assemble import assemble
 from runner.controllers.macro_mini.stage_loops import MacroController, MiniController, mini_moves
 from runner.robots.robot import end_points
-from runner.simulation.assembly import assemble
 from runner.simulation.loop import simulate
 from runner.simulation.sensors import make_encoders
 from runner.symbolic.maths import NUMPY

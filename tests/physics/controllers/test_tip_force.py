@@ -6,10 +6,10 @@ from typing import Any, NamedTuple
 import numpy as np
 import pytest
 
+from runner.assembly.assemble import assemble
 from runner.controllers.force.tip_force import TipForce, TipForceConfig, find_force_task
 from runner.controllers.operational_space.whole_body import WholeBody, WholeBodyLaw
 from runner.controllers.torque_law import PinocchioArm
-from runner.simulation.assembly import assemble
 from runner.simulation.loop import simulate
 from runner.simulation.sensors import make_sensors
 

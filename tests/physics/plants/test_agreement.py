@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 from support import strangers
 
-from runner.simulation.assembly import assemble
+from runner.assembly.assemble import assemble
 from runner.simulation.loop import simulate
 from runner.simulation.sensors import make_encoders
 

@@ -4,10 +4,10 @@ import numpy as np
 import pytest
 from support.unusual_arms import LIMIT, arm, first, second
 
+from runner.assembly import engine_check
+from runner.assembly.validation import validate
 from runner.base.errors import ConfigError
-from runner.config import engine_check
 from runner.config.compose.compose import compose
-from runner.config.validation import validate
 from runner.plants.agreement import ENGINES, Agreement, compare
 from runner.robots.description import read_urdf
 from runner.robots.model import RobotModel

@@ -4,16 +4,16 @@ import numpy as np
 import pytest
 from support.arms import checked, model_of, urdf_of
 
+from runner.assembly.assemble import assemble
 from runner.base.errors import ConfigError
 from runner.plants.mujoco import Mujoco
 from runner.plants.rk4 import Rk4
-from runner.simulation.assembly import assemble
 from runner.simulation.loop import simulate
 from runner.simulation.sensors import make_encoders
 
 pytest.importorskip("pybullet", reason="PyBullet is not installed")
 
-from runner.plants.bullet import LinksTorque
+from runner.plants.bullet_engine import LinksTorque
 
 GEARED = ("robot=xarm7", "robot.armature=assumed", "controller=computed_torque", "trajectory=quintic",
           "trajectory.duration=0.5", "duration=0.6", "controller.period=0.002", "plant.step=0.001")  # fmt: skip
@@ -52,7 +52,7 @@ def test_links_get_the_torque_that_gives_the_accelerations_of_the_whole():
 @pytest.mark.bullet
 @pytest.mark.parametrize("steps", [1, 4])
 def test_bullet_moves_as_mujoco_s_euler_under_any_torque(steps):
-    from runner.plants.bullet import Bullet
+    from runner.plants.bullet_engine import Bullet
 
     config, generator = checked("robot=xarm7", "robot.armature=assumed"), np.random.default_rng(2)
     arm, worst = config.arm, 0.0
@@ -125,7 +125,7 @@ def test_one_joint_under_constant_torque_is_the_closed_form(one_joint):
 @pytest.fixture
 def one_joint():
     """Return every engine with a joint of inertia 3 and armature 1.5 kg m^2, and how far it is ahead, in steps."""
-    from runner.plants.bullet import Bullet
+    from runner.plants.bullet_engine import Bullet
     from runner.robots.model import RobotModel
 
     model = RobotModel(ONE_JOINT, "tip", 0.0).with_armature(np.array([1.5]))

@@ -11,7 +11,8 @@ from runner.robots.model import RobotModel
 
 pybullet = pytest.importorskip("pybullet", reason="PyBullet is not installed")
 
-from runner.plants.bullet import Bullet, build, default_step  # noqa: E402
+from runner.plants.bullet import build, default_step  # noqa: E402
+from runner.plants.bullet_engine import Bullet  # noqa: E402
 from runner.plants.stepped_bullet import SteppedBullet  # noqa: E402
 
 INERTIAL = '<inertial><mass value="{m}"/><inertia ixx="{i}" ixy="0" ixz="0" iyy="{i}" iyz="0" izz="{i}"/></inertial>'

@@ -6,9 +6,9 @@ import sys
 import numpy as np
 import pytest
 
+from runner.assembly.assemble import assemble
 from runner.base.errors import ConfigError
 from runner.plants import decoupled
-from runner.simulation.assembly import assemble
 
 pybullet = pytest.importorskip("pybullet", reason="PyBullet is not installed")
 
@@ -17,8 +17,8 @@ from runner.plants.bullet_servers import SERVERS, PhysicsServers  # noqa: E402
 
 RUN = """
 from runner.config.compose.compose import compose
-from runner.config.validation import validate
-from runner.simulation.assembly import assemble
+from runner.assembly.validation import validate
+from runner.assembly.assemble import assemble
 from runner.simulation.sensors import make_encoders
 from runner.simulation.loop import simulate
 config = validate(compose(["robot=macro", "noise=thesis", "torque_limits=thesis", "duration=0.5"]))
@@ -96,8 +96,8 @@ def test_a_plant_that_raises_while_it_is_set_up_leaves_none(servers_before, monk
 @pytest.mark.parametrize(
     ("overrides", "part"),
     [
-        (("robot=meca500", "plant=bullet"), "runner.simulation.assembly.JointServo"),
-        (("robot=meca500", "plant=bullet"), "runner.simulation.assembly.Interaction"),
+        (("robot=meca500", "plant=bullet"), "runner.assembly.assemble.JointServo"),
+        (("robot=meca500", "plant=bullet"), "runner.assembly.assemble.Interaction"),
         (("robot=macro", "plant.friction.coulomb=1"), "runner.plants.friction.Frictional"),
         (("robot=combined", "plant.dynamics=decoupled"), "runner.plants.decoupled.StageBase"),
     ],

@@ -15,7 +15,7 @@ from runner.robots.model import RobotModel
 
 pybullet = pytest.importorskip("pybullet", reason="PyBullet is not installed")
 
-from runner.plants.bullet import Bullet  # noqa: E402
+from runner.plants.bullet_engine import Bullet  # noqa: E402
 
 ARMS = ("macro", "mini", "combined", "meca500", "xarm7", "panda", "ur5e", "sawyer", "so101", "z1")
 STEP = 5e-4

@@ -88,7 +88,7 @@ def test_the_mass_matrix_is_singular_where_the_mini_lies_folded_along_joint_4(fr
 @pytest.mark.bullet
 @pytest.mark.parametrize("seed", range(3))
 def test_one_step_of_bullet_is_semi_implicit_euler_on_the_forward_dynamics(combined, seed):
-    from runner.plants.bullet import Bullet
+    from runner.plants.bullet_engine import Bullet
 
     h, plant = 1e-5, Bullet(combined.urdf, combined.model, 1e-5, 1)
     try:

@@ -5,7 +5,8 @@ import pytest
 from scipy.integrate import solve_ivp
 from support.arms import model_of
 
-from runner.plants.flexible_joints import Flexibility, FlexibleJoints
+from runner.plants.flexibility import Flexibility
+from runner.plants.flexible_joints import FlexibleJoints
 from runner.robots.model import RobotModel
 
 HOME = np.zeros(3)  # rad, of the thesis

@@ -11,7 +11,8 @@ from support.friction import MASS, WHEEL, friction_law
 from support.physics import assert_order
 from support.stick_slip import STIFFNESS, exact_coulomb_period, exact_period, period_of, pulled
 
-from runner.plants.flexible_joints import Flexibility, FlexibleJoints
+from runner.plants.flexibility import Flexibility
+from runner.plants.flexible_joints import FlexibleJoints
 from runner.plants.friction import Frictional, MotorFriction
 from runner.plants.rk4 import Rk4
 from runner.robots.model import RobotModel

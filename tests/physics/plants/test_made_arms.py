@@ -8,9 +8,9 @@ import numpy as np
 import pytest
 from support.made_arms import Writer, make_arm
 
+from runner.assembly.validation import validate
 from runner.base.engines import has_pybullet
 from runner.config.compose.compose import compose
-from runner.config.validation import validate
 from runner.plants.mujoco import Mujoco
 from runner.robots.description import read_urdf
 from runner.robots.model import RobotModel
@@ -40,7 +40,7 @@ def in_mujoco(urdf, q, dq):
 def in_bullet(urdf, q, dq):
     import pybullet
 
-    from runner.plants.bullet import Bullet
+    from runner.plants.bullet_engine import Bullet
 
     model = RobotModel(urdf, "tip")
     plant = Bullet(urdf, model, 1e-3, 1)

@@ -4,7 +4,8 @@ import numpy as np
 import pytest
 
 from runner.papers.studies.thesis_beyond.cantilever import clamped_arm
-from runner.plants.flexible_joints import Flexibility, FlexibleJoints
+from runner.plants.flexibility import Flexibility
+from runner.plants.flexible_joints import FlexibleJoints
 from runner.robots.description import find_urdf, read_urdf
 from runner.robots.model import RobotModel
 

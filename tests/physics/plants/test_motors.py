@@ -4,7 +4,8 @@ import numpy as np
 import pytest
 from support.friction import friction_law
 
-from runner.plants.flexible_joints import Flexibility, FlexibleJoints
+from runner.plants.flexibility import Flexibility
+from runner.plants.flexible_joints import FlexibleJoints
 from runner.plants.friction import MotorFriction, stopping_torques
 from runner.robots.model import RobotModel
 

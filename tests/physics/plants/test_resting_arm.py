@@ -7,7 +7,8 @@ import pytest
 from support.arms import model_of
 from support.resting_arm import RestingArm
 
-from runner.plants.flexible_joints import Flexibility, FlexibleJoints
+from runner.plants.flexibility import Flexibility
+from runner.plants.flexible_joints import FlexibleJoints
 
 HOME = np.zeros(3)  # rad, of the thesis
 PERIOD, OMEGA = 1e-2, 30.0

@@ -4,9 +4,9 @@ import numpy as np
 import pinocchio as pin
 import pytest
 
+from runner.assembly.assemble import assemble
 from runner.plants import PLANTS
 from runner.robots.mounting import find_tool, holding_wrench
-from runner.simulation.assembly import assemble
 
 ORIENTATIONS = 100
 WEIGHT = 0.25 * 9.81  # N, of the tool

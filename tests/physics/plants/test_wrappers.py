@@ -3,10 +3,10 @@
 import numpy as np
 import pytest
 
+from runner.assembly.assemble import assemble
 from runner.environments import ENVIRONMENTS
 from runner.environments.wall import WallConfig
 from runner.plants.wrappers import WithTipContact
-from runner.simulation.assembly import assemble
 
 POSTURES = {"macro": [0.3, 0.4, -0.5], "mini": [0.3, 0.4, -0.5]}
 ENGINES = {

@@ -52,7 +52,7 @@ def test_mujoco_has_the_same_model(texts):
 def test_pybullet_has_the_same_arm(texts):
     import pybullet
 
-    from runner.plants.bullet import Bullet
+    from runner.plants.bullet_engine import Bullet
 
     found = []
     for text in texts:

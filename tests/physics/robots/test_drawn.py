@@ -5,11 +5,11 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
+from runner.assembly.assemble import describe_program, start_of
+from runner.assembly.drawn_loops import draw_commands
 from runner.robots.drawn import DrawnModel, by_run, each_run, over_runs
 from runner.robots.mismatch import MismatchConfig, build, build_drawn
 from runner.sensing.streams import MISMATCH
-from runner.simulation.assembly import describe_program, find_start
-from runner.simulation.drawn_loops import draw_commands
 from runner.simulation.run import simulate_repetition, simulate_run
 from runner.symbolic.engine import evaluator
 from tools.laws import LAWS
@@ -111,7 +111,7 @@ def test_every_law_has_the_numbers_and_the_start_of_single_models(checked_config
     assert len(np.unique(found, axis=0)) == RUNS
     kept = single[0].drawn_values(commands)
     np.testing.assert_allclose(kept[0], single[0].values, rtol=1e-9, atol=1e-12)
-    q = find_start(config) + np.random.default_rng(0).normal(0.0, 0.01, (RUNS, config.arm.model.nq))
+    q = start_of(config) + np.random.default_rng(0).normal(0.0, 0.01, (RUNS, config.arm.model.nq))
     errors = [np.zeros_like(q)] * len(commands.loops)
     pairs = zip(single, q, strict=True)
     starts = [each.commands.start(own[None], [np.zeros((1, len(own)))] * len(errors))[0] for each, own in pairs]

@@ -25,7 +25,7 @@ def test_controllers_lead_strangers(simulated_stranger, name, controller):
 
 @pytest.fixture(scope="module")
 def simulated_stranger():
-    from runner.simulation.assembly import assemble
+    from runner.assembly.assemble import assemble
     from runner.simulation.loop import simulate
     from runner.simulation.sensors import make_encoders
 

@@ -62,7 +62,7 @@ def off(plant, model):
 @pytest.mark.bullet
 @pytest.mark.parametrize("arm", ARMS)
 def test_bullet_reads_them_as_they_are_written(tmp_path, arm):
-    from runner.plants.bullet import Bullet
+    from runner.plants.bullet_engine import Bullet
 
     urdf = read_urdf(written(tmp_path / "arm.urdf", ARMS[arm]), {})
     model = RobotModel(urdf, "tip")

@@ -4,8 +4,8 @@ import numpy as np
 import pinocchio as pin
 import pytest
 
+from runner.assembly.assemble import assemble
 from runner.robots.mismatch import MismatchConfig, build
-from runner.simulation.assembly import assemble
 from runner.simulation.loop import simulate
 from runner.simulation.sensors import make_encoders
 from runner.sweeps.job import run

@@ -5,11 +5,11 @@ import pinocchio as pin
 import pytest
 import yaml
 
+from runner.assembly.assemble import assemble
+from runner.assembly.validation import validate
 from runner.base.paths import conf_dir
 from runner.config.compose.compose import compose
-from runner.config.validation import validate
 from runner.robots.robot import StageBase, end_points
-from runner.simulation.assembly import assemble
 from runner.simulation.loop import simulate
 from runner.simulation.sensors import make_encoders
 

@@ -6,9 +6,9 @@ from pathlib import Path
 
 import pytest
 
+from runner.assembly.validation import validate
 from runner.config.compose.compose import compose
 from runner.config.compose.files import group_options
-from runner.config.validation import validate
 
 PAGE = (Path(__file__).parents[3] / "docs" / "robots.md").read_text()
 ROWS = {

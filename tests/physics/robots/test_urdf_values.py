@@ -76,7 +76,7 @@ def test_limits_that_the_doctor_mends_are_refused_by_a_run(tmp_path):
 
 @pytest.mark.bullet
 def test_the_longest_names_and_the_most_joints_can_be_simulated(tmp_path):
-    from runner.plants.bullet import Bullet
+    from runner.plants.bullet_engine import Bullet
 
     path = tmp_path / "arm.urdf"
     for text in (changed('"l2"', f'"{"l" * 200}"').replace('"q2"', f'"{"q" * 200}"'), joints(64)):

@@ -6,8 +6,8 @@ import numpy as np
 import pytest
 import yaml
 
+from runner.assembly.arms import build_robot, read_outline
 from runner.base.paths import robots_dir
-from runner.config.arms import build_robot, read_outline
 from runner.config.compose.compose import compose
 from runner.config.compose.files import group_options
 from runner.config.robot import OneArmConfig, StagedRobotConfig
@@ -74,7 +74,7 @@ def test_gravity_is_the_gradient_of_the_energy(model):
 def test_both_engines_have_the_same_dynamics(name, overrides):
     import pybullet
 
-    from runner.plants.bullet import Bullet
+    from runner.plants.bullet_engine import Bullet
 
     arm = robot(name, *overrides)
     model, plant = arm.model, Bullet(arm.urdf, arm.model, 1e-3, 1)

@@ -4,9 +4,9 @@ import numpy as np
 import pytest
 from support.arms import checked, last_of_each
 
+from runner.assembly.assemble import assemble
 from runner.base.errors import ConfigError
 from runner.sensing.joint_torque import JointTorqueNoise, JointTorqueSensor
-from runner.simulation.assembly import assemble
 from runner.simulation.loop import simulate
 from runner.simulation.sensors import make_encoders, make_joint_torque_sensor
 

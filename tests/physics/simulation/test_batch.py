@@ -8,12 +8,12 @@ import pytest
 import yaml
 from support.arms import checked
 
+from runner.assembly.drawn_loops import draws_together
+from runner.assembly.validation import validate
 from runner.base.paths import conf_dir
 from runner.config.compose.compose import compose
-from runner.config.validation import validate
 from runner.simulation import batch
 from runner.simulation.batch import BatchResult, BatchSimulator, simulate_together
-from runner.simulation.drawn_loops import draws_together
 from runner.simulation.results import Collector
 from runner.simulation.run import simulate_repetition
 from runner.symbolic.engine import evaluator

@@ -6,12 +6,12 @@ import threading
 import numpy as np
 import pytest
 
+from runner.assembly.validation import validate
 from runner.config.compose.compose import compose
-from runner.config.validation import validate
 from runner.simulation import run as simulation
 from runner.simulation.batch import BatchSimulator
 from runner.simulation.run import MOST_THREADS, simulate_blocks
-from runner.store.writing import make_record
+from runner.sweeps.records import make_record
 from runner.symbolic.engine import evaluator
 
 pytestmark = pytest.mark.skipif(not evaluator(), reason="runs are compiled as a whole by llvmlite")

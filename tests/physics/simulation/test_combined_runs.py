@@ -9,9 +9,10 @@ from support.arms import last_of_each
 from support.covers import name_of, pairwise
 from support.printed import without_caveats, without_results
 
+from runner.assembly.assemble import assemble
 from runner.metrics.summary import evaluate
-from runner.simulation.assembly import assemble, metric_context
 from runner.simulation.loop import simulate
+from runner.simulation.results import metric_context
 from runner.simulation.sensors import make_encoders
 from runner.store import open_run
 

@@ -6,11 +6,11 @@ import numpy as np
 import pytest
 from support.arms import checked
 
+from runner.assembly.assemble import assemble
+from runner.assembly.validation import validate
 from runner.base.errors import ConfigError
 from runner.config.compose.compose import compose
-from runner.config.validation import validate
 from runner.plants.flexible_joints import FlexibleJoints
-from runner.simulation.assembly import assemble
 from runner.simulation.sensors import make_measured_tips
 
 KEY = "plant.flexible_joints"

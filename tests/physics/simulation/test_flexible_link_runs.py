@@ -7,13 +7,13 @@ import pytest
 from support.arms import checked
 from support.physics import assert_order
 
+from runner.assembly.assemble import assemble
 from runner.base.errors import ConfigError
 from runner.config.compose.compose import compose
 from runner.papers.studies.thesis_beyond.cantilever import cantilever_roots
 from runner.plants import PLANTS
 from runner.robots.robot import with_armature
 from runner.robots.vibration import Mode, stiffen_robot
-from runner.simulation.assembly import assemble
 from runner.store import simulated_part
 from runner.trajectories.shaped import zero_vibration
 

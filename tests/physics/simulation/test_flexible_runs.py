@@ -5,10 +5,10 @@ import pytest
 from support.arms import checked
 from support.physics import assert_order
 
+from runner.assembly.flexibility import with_nominal_motors
+from runner.assembly.validation import validate
 from runner.base.errors import ConfigError
 from runner.config.compose.compose import compose
-from runner.config.flexibility import with_nominal_motors
-from runner.config.validation import validate
 from runner.plants.flexible_joints import links_of
 from runner.robots.robot import with_armature
 from runner.store import simulated_part

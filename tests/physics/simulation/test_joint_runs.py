@@ -4,9 +4,10 @@ import numpy as np
 import pytest
 from support.physics import assert_order
 
+from runner.assembly.assemble import assemble
 from runner.metrics.summary import evaluate
-from runner.simulation.assembly import assemble, metric_context
 from runner.simulation.loop import simulate
+from runner.simulation.results import metric_context
 from runner.simulation.sensors import make_encoders
 from runner.sweeps.job import run
 
@@ -54,7 +55,7 @@ def test_compiled_and_through_pinocchio_it_is_one_law(checked_config, monkeypatc
     more = (f"controller.feedforward={feedforward}", f"controller.integral_gain={gain}")
     config = checked_config(*JOINTS, "controller=computed_torque", *more)
     whole = traced(config)
-    monkeypatch.setattr("runner.simulation.assembly._find_commands", lambda *_: None)
+    monkeypatch.setattr("runner.assembly.assemble._find_commands", lambda *_: None)
     plain = traced(config)
     np.testing.assert_allclose(whole.q, plain.q, atol=1e-9)
     np.testing.assert_allclose(whole.tau, plain.tau, atol=1e-6)
@@ -63,7 +64,7 @@ def test_compiled_and_through_pinocchio_it_is_one_law(checked_config, monkeypatc
 def test_bullet_s_commands_are_compiled_too(checked_config, monkeypatch):
     config = checked_config(*JOINTS[:2], "plant=mujoco", *JOINTS[3:], "controller=computed_torque")
     compiled = traced(config)
-    monkeypatch.setattr("runner.simulation.assembly._find_commands", lambda *_: None)
+    monkeypatch.setattr("runner.assembly.assemble._find_commands", lambda *_: None)
     np.testing.assert_allclose(compiled.q, traced(config).q, atol=1e-9)
 
 

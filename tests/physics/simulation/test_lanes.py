@@ -3,8 +3,8 @@
 import numpy as np
 import pytest
 
-from runner.simulation.assembly import assemble_program
-from runner.simulation.compiled.loop_program import run_all
+from runner.assembly.assemble import assemble_program
+from runner.assembly.compiled.loop_program import run_all
 from runner.symbolic.engine import evaluator
 from runner.symbolic.program import LANES, Frame
 

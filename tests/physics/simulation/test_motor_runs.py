@@ -7,8 +7,8 @@ import pytest
 
 from runner.base.errors import ConfigError
 from runner.metrics.summary import measure
-from runner.simulation.assembly import metric_context
 from runner.simulation.loop import simulate
+from runner.simulation.results import metric_context
 from runner.simulation.sensors import make_encoders
 
 SPINNING = ("robot=planar", "gravity=0", "controller=held_torques", "controller.torques=[1000,0]",

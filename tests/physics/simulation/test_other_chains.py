@@ -8,6 +8,7 @@ import pytest
 from support import strangers
 from support.arms import tip_numbers
 
+from runner.assembly.assemble import assemble
 from runner.base.errors import ConfigError
 from runner.controllers.macro_mini.macro_mini import later_home_offset
 from runner.controllers.macro_mini.stage_loops import MacroController, MiniController, StageLaw
@@ -19,7 +20,7 @@ from runner.plugins.metric_units import units
 from runner.robots.description import find_urdf, read_urdf
 from runner.robots.model import RobotModel
 from runner.robots.robot import end_points
-from runner.simulation.assembly import assemble, metric_context
+from runner.simulation.results import metric_context
 
 CHAINS = ["macro_mini_mini", "xarm7_mini"]
 PLANTS = ["default", "rk4"]

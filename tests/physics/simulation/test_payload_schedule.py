@@ -4,8 +4,8 @@ import numpy as np
 import pytest
 from support.arms import checked
 
+from runner.assembly.assemble import assemble
 from runner.base.errors import ConfigError
-from runner.simulation.assembly import assemble
 from runner.simulation.loop import simulate
 from runner.simulation.sensors import make_encoders
 from runner.sweeps.job import run

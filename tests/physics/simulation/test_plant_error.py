@@ -6,11 +6,11 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
+from runner.assembly.validation import validate
 from runner.base.engines import has_pybullet
 from runner.base.trace import Failure
+from runner.caveats.integration_error import compare, on_runge_kutta, sufficient_step
 from runner.config.compose.compose import compose
-from runner.config.validation import validate
-from runner.metrics.plant_error import compare, on_runge_kutta, sufficient_step
 from runner.simulation.run import simulate_run
 from runner.sweeps.job import run
 

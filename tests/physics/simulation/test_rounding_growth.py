@@ -7,10 +7,10 @@ import pytest
 from scipy.linalg import expm
 from support.engines import ASKED
 
-from runner.metrics.rounding import SENSITIVE, move_start
+from runner.assembly.assemble import start_of
+from runner.caveats.rounding_growth import SENSITIVE, move_start
 from runner.sensing.streams import ROUNDING
 from runner.simulation import run as simulation
-from runner.simulation.assembly import find_start
 from runner.simulation.run import measure_rounding, simulate_blocks
 from runner.sweeps.job import run
 
@@ -33,7 +33,7 @@ def test_an_arm_that_falls_from_its_equilibrium_follows_linear_theory(checked_co
     """M d'' = -K d about a configuration where constant torques carry the arm."""
     fall = ("robot=macro", "plant=rk4", "controller=held_torques", "noise=none", "duration=5")
     config = checked_config(*fall)
-    model, q = config.arm.model, find_start(config)
+    model, q = config.arm.model, start_of(config)
     held = ",".join(map(repr, model.gravity_torque(q).tolist()))
     config = checked_config(*fall, f"controller.torques=[{held}]")
     slopes = [model.gravity_torque(q + 1e-6 * one) - model.gravity_torque(q - 1e-6 * one) for one in np.eye(3)]

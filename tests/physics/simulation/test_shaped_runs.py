@@ -4,9 +4,9 @@ import numpy as np
 import pytest
 from support.arms import checked
 
+from runner.assembly.validation import validate
 from runner.base.errors import ConfigError
 from runner.config.compose.compose import compose
-from runner.config.validation import validate
 from runner.plants import PLANTS
 from runner.robots.vibration import Mode
 from runner.store import simulated_part

@@ -8,11 +8,11 @@ import sys
 import numpy as np
 import pytest
 
+from runner.assembly.assemble import assemble
 from runner.controllers import Loop
 from runner.plants import Plant
 from runner.plants.motor_limits import TorqueLimits
 from runner.sensing.encoders import EncoderNoise, JointEncoders
-from runner.simulation.assembly import assemble
 from runner.simulation.loop import ClosedLoop, simulate
 from runner.simulation.sensors import make_encoders
 
@@ -239,7 +239,7 @@ def test_another_process_gives_the_same_bits(simulated):
         "import sys; sys.path[:0] = sys.argv[1:3]\n"
         "import test_simulation as t\n"
         "from runner.config.compose.compose import compose\n"
-        "from runner.config.validation import validate\n"
+        "from runner.assembly.validation import validate\n"
         "config = validate(compose(sys.argv[3:]))\n"
         "loop = t.assemble(config)\n"
         "print(t.fingerprint(t.simulate(loop, t.make_encoders(loop, config.noise, config.settings.seed, 1))))\n"

@@ -5,10 +5,10 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 
+from runner.assembly.compiled.commands import Commands, LoopCode
+from runner.assembly.compiled.loops import CompiledLoops
 from runner.plants.motor_limits import TorqueLimits
 from runner.sensing.encoders import EncoderNoise
-from runner.simulation.compiled.commands import Commands, LoopCode
-from runner.simulation.compiled.loops import CompiledLoops
 from runner.symbolic.engine import evaluator
 
 pytestmark = pytest.mark.skipif(not evaluator(), reason="laws are compiled by llvmlite")

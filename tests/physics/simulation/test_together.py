@@ -2,11 +2,11 @@
 
 import pytest
 
+from runner.assembly.validation import validate
 from runner.config.compose.compose import compose
-from runner.config.validation import validate
 from runner.simulation.batch import BatchSimulator, simulate_together
 from runner.simulation.run import simulate_run
-from runner.store.writing import make_record
+from runner.sweeps.records import make_record
 from runner.symbolic.engine import evaluator
 
 pytestmark = pytest.mark.skipif(not evaluator(), reason="runs are compiled as a whole by llvmlite")

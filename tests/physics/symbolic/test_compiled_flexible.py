@@ -4,7 +4,8 @@ import numpy as np
 import pytest
 from support.arms import model_of
 
-from runner.plants.flexible_joints import Flexibility, FlexibleJoints
+from runner.plants.flexibility import Flexibility
+from runner.plants.flexible_joints import FlexibleJoints
 
 SPRINGS = {  # K, B, D; a joint without spring is rigid
     "all": ([1000.0, 800.0, 600.0], [2.0, 1.5, 1.0], [5.0, 4.0, 0.0]),

@@ -6,14 +6,14 @@ import numpy as np
 import pytest
 from support.friction import friction_law
 
+from runner.assembly.compiled.commands import Commands, LoopCode
+from runner.assembly.compiled.loop_program import LoopProgram, Setting, tangents
 from runner.controllers.torque_law import TorqueLaw
 from runner.plants.decoupled import ArmMotion, Motion
 from runner.plants.motor_limits import TorqueLimits
 from runner.robots.mismatch import scale_model
 from runner.robots.model import RobotModel
 from runner.sensing.encoders import EncoderNoise
-from runner.simulation.compiled.commands import Commands, LoopCode
-from runner.simulation.compiled.loop_program import LoopProgram, Setting, tangents
 
 URDF = """<robot name="wheel"><link name="base"/><link name="rod"><inertial><origin xyz="0.4 0 0"/><mass value="2"/>
 <inertia ixx="0.1" ixy="0" ixz="0" iyy="0.1" iyz="0" izz="0.18"/></inertial></link><link name="tip"/>

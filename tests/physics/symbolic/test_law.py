@@ -8,6 +8,10 @@ import pytest
 from support import strangers
 from support.arms import checked
 
+from runner.assembly.compiled import commands as loops
+from runner.assembly.compiled.commands import Commands, LoopCode
+from runner.assembly.compiled.law import law_cache_key
+from runner.assembly.compiled.loops import CompiledLoops
 from runner.base.errors import SimulationError
 from runner.controllers import Loop, guard_law
 from runner.controllers.torque_law import TorqueLaw
@@ -15,10 +19,6 @@ from runner.plants import compiled_motion
 from runner.plants.motor_limits import TorqueLimits
 from runner.plugins.guard import unguarded
 from runner.sensing.encoders import EncoderNoise
-from runner.simulation.compiled import commands as loops
-from runner.simulation.compiled.commands import Commands, LoopCode
-from runner.simulation.compiled.law import law_cache_key
-from runner.simulation.compiled.loops import CompiledLoops
 from runner.symbolic import program
 from runner.symbolic.structure import CannotCompileError
 from tools.laws import ARM_LAWS, JOINT_LAWS, LAWS
@@ -155,7 +155,7 @@ def test_numbers_are_parameters_and_zeros_are_not(monkeypatch):
     config = configured("macro", "operational_space", "controller.natural_frequency=25.0")
     measured = states(config.arm.model, config.arm.home)
     compiled_torques(law, measured)
-    monkeypatch.setattr("runner.simulation.compiled.commands.Expressed", None)  # nothing is expressed any more
+    monkeypatch.setattr("runner.assembly.compiled.commands.Expressed", None)  # nothing is expressed any more
     assert_agree(other, other, measured)
 
 

@@ -7,10 +7,10 @@ import pytest
 from support.arms import checked
 from support.physics import assert_same_motion
 
-from runner.simulation.assembly import assemble, assemble_program
+from runner.assembly.assemble import assemble, assemble_program
+from runner.assembly.compiled import commands
+from runner.assembly.compiled.loop_program import run_all
 from runner.simulation.batch import BatchSimulator
-from runner.simulation.compiled import commands
-from runner.simulation.compiled.loop_program import run_all
 from runner.simulation.loop import simulate
 from runner.simulation.run import simulate_repetition
 from runner.simulation.sensors import make_encoders

@@ -6,9 +6,9 @@ import pyarrow.parquet
 import pytest
 from support.grids import plan_sweep
 
+from runner.assembly.validation import validate
 from runner.base.errors import ConfigError
 from runner.config.compose.compose import compose
-from runner.config.validation import validate
 from runner.robots.robot import end_points
 from runner.store import run_hash
 from runner.store.identity import simulated_part

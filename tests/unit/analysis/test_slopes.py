@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from runner.analysis.slopes import _PART, NoDerivativeError, Scene
-from runner.simulation.compiled.loop_program import Setting
+from runner.assembly.compiled.loop_program import Setting
 
 VALUE = 2.0
 STEP = VALUE * _PART  # between two values at which numbers are taken

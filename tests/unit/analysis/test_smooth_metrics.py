@@ -6,9 +6,9 @@ import numpy as np
 import pytest
 
 from runner.analysis.smooth_metrics import WITHOUT, derivatives
+from runner.assembly.compiled.loops import Rows
 from runner.metrics.family import MetricContext
 from runner.metrics.summary import evaluate
-from runner.simulation.compiled.loops import Rows
 from runner.trajectories.motion import quintic_motion
 
 STEP, ROWS, PARAMETERS = 1e-6, 400, 2

@@ -7,9 +7,9 @@ import sys
 import pytest
 from support.grids import plan_sweep
 
+from runner.assembly.validation import validate
 from runner.base import engines
 from runner.config.compose.compose import compose
-from runner.config.validation import validate
 from runner.plants import stepped_bullet
 from runner.simulation.provenance import command
 from runner.simulation.run import simulate_repetition

@@ -11,7 +11,7 @@ CHECK = """
 import sys
 from runner.base.errors import ConfigError
 from runner.config.compose.compose import compose
-from runner.config.validation import validate
+from runner.assembly.validation import validate
 
 try:
     validate(compose(sys.argv[1:]))

@@ -4,8 +4,8 @@ import numpy as np
 import pinocchio as pin
 import pytest
 
+from runner.assembly.validation import validate
 from runner.config.compose.compose import compose
-from runner.config.validation import validate
 from runner.recordings.columns_map import Factor, Signal
 from runner.recordings.consistency import check_consistency
 from runner.recordings.recording import Recording

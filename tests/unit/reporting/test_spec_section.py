@@ -6,10 +6,10 @@ import numpy as np
 import pytest
 from support.sample_sweep import measurements, two_axes
 
-from runner.config.judgement import Bound
 from runner.reporting.document import Curves, Maps, Table, Text
 from runner.reporting.sweep import spec
 from runner.reporting.sweep.subject import choose
+from runner.schema.bound import Bound
 from runner.statistics.proportion import count_share
 from runner.store.sweep import Sweep
 

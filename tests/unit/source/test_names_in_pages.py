@@ -10,7 +10,7 @@ from support.pages import ROOT, pages, steps
 
 from runner.cli import commands
 from runner.cli.completion.overrides import metric_names
-from runner.cli.main import build_parser
+from runner.cli.parser import build_parser
 from runner.config.compose.files import group_options, groups
 
 GENERATED = ("reference.md", "architecture.md")

@@ -61,7 +61,7 @@ def test_a_value_by_joint_is_worked_out_once():
         for argument in (node.args if isinstance(node, ast.Call) else node.elts)
         if isinstance(argument, ast.Constant) and argument.value in keys
     ]
-    assert sorted(places) == [("noise.position", "encoders"), ("torque_limits.max", "torque_limits")]
+    assert sorted(places) == [("noise.position", "encoders"), ("torque_limits.max", "arms")]
 
 
 def test_every_cache_of_a_module_is_bounded():

@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 
 from runner.base.machine import today
-from runner.config.judgement import Bound
+from runner.schema.bound import Bound
 from runner.statistics.proportion import count_share
 from runner.statistics.spec import (
     Verdict,

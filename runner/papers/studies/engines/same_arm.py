@@ -8,7 +8,7 @@ import pinocchio as pin
 from runner.base.arrays import FloatArray
 from runner.papers.study.measured import Measured
 from runner.papers.study.results import Runs
-from runner.plants.bullet import Bullet
+from runner.plants.bullet_engine import Bullet
 from runner.plants.compiled_motion import CompiledStep
 from runner.plants.flexible_joints import runge_kutta
 from runner.plants.mujoco import Mujoco

@@ -7,14 +7,14 @@ from typing import Any
 
 import numpy as np
 
+from runner.assembly.validation import validate
 from runner.caveats.contact_stability import servo_contact
+from runner.caveats.servo_contact_stability import ServoContact, contact_radius, stiffest_servo_wall
 from runner.config.composed import Composed
-from runner.config.validation import validate
 from runner.controllers.stability import stiffest_wall
 from runner.papers.studies.meca500.figures import bounces, once
 from runner.papers.studies.meca500.plan import law_in
 from runner.papers.study.results import Runs
-from runner.plants.servo_contact_stability import ServoContact, contact_radius, stiffest_servo_wall
 from runner.store import Run
 
 

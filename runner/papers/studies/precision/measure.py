@@ -12,22 +12,22 @@ from typing import Any
 import numpy as np
 
 from runner import store
+from runner.assembly.assemble import assemble
+from runner.assembly.closed_loop import ClosedLoop
+from runner.assembly.run_config import RunConfig
+from runner.assembly.validation import validate
+from runner.assembly.versions import versions
 from runner.base.atomic import write_atomically
 from runner.base.errors import StoreError
 from runner.base.machine import this_machine
 from runner.base.trace import Trace
 from runner.config.compose.compose import compose
-from runner.config.run import RunConfig
-from runner.config.validation import validate
 from runner.papers.studies.precision.exact import Adaptive, Collocation, energy_drift
 from runner.papers.study.grids import FILE as RUNS
 from runner.papers.study.grids import Grids
 from runner.plants import Plant
 from runner.plants.rk4 import Rk4
 from runner.robots.model import RobotModel
-from runner.simulation import provenance
-from runner.simulation.assembly import assemble
-from runner.simulation.closed_loop import ClosedLoop
 from runner.simulation.loop import simulate
 from runner.simulation.run import simulate_repetition
 from runner.simulation.sensors import make_encoders
@@ -71,7 +71,7 @@ def measure(outputs: Path) -> None:
         return
     record = {
         "machine": this_machine().record(),
-        "versions": provenance.versions(),
+        "versions": versions(),
         "runs": hashes,
         "cases": {case: _solved(steps) for case, steps in cases.items()},
     }

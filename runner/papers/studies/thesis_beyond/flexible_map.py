@@ -6,13 +6,13 @@ from typing import Any, cast
 
 import numpy as np
 
+from runner.assembly.assemble import assemble
+from runner.assembly.validation import validate
 from runner.base.arrays import FloatArray
 from runner.base.dotted_keys import put
 from runner.config.composed import Composed
-from runner.config.validation import validate
 from runner.controllers import Controller
 from runner.reporting.document import Series
-from runner.simulation.assembly import assemble
 from runner.store import Run
 
 _WIDTH = 1e-6  # rad and rad/s, of the central differences

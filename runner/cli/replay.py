@@ -1,0 +1,89 @@
+"""Replay of a log: the run in which the log's commands drive the model of the arm."""
+
+import hashlib
+from collections.abc import Sequence
+from dataclasses import dataclass
+from pathlib import Path
+
+from runner.assembly.validation import validate
+from runner.base.atomic import write_atomically
+from runner.base.errors import RunnerError
+from runner.config.compose.compose import compose
+from runner.doctor.log import LONGEST_GAP, examine_log
+from runner.doctor.log_files import MAP, MOTION, map_text
+from runner.store import Run
+from runner.sweeps import job
+
+FOLDER = "logs"
+"""Folder in the outputs folder of the maps and motions of logs."""
+
+
+@dataclass(frozen=True)
+class Replay:
+    """The run of a log.
+
+    Attributes:
+        run: The run.
+        columns: The column map that was used.
+        commanded: Whether the run follows commanded positions; otherwise it follows the measured ones.
+        notes: What was done to make the motion, and the error that it makes.
+        fill_gaps: Longest gap of the log that is filled, in s; 0 for none.
+    """
+
+    run: Run
+    columns: Path
+    commanded: bool
+    notes: tuple[str, ...]
+    fill_gaps: float
+
+
+def replay(
+    log: Path,
+    robot: str,
+    outputs: Path,
+    controller: str = "computed_torque",
+    columns: Path | None = None,
+    config_dirs: Sequence[Path] = (),
+) -> Replay:
+    """Simulate the motion of a log with a model of the arm, in closed loop, or find the stored run.
+
+    Args:
+        log: The log, a file or a folder.
+        robot: Name of the robot, as in `robot=ROBOT`.
+        outputs: Outputs folder.
+        controller: Name of the controller, as in `controller=NAME`.
+        columns: Column map; None for the one that the doctor proposes.
+        config_dirs: Config folders of the user.
+
+    Raises:
+        RunnerError: if the log cannot be read, or has open questions; names them.
+        ConfigError: if the robot or controller does not exist, or the run cannot be made.
+    """
+    model = validate(compose((f"robot={robot}",), config_dirs)).arm.model
+    found = examine_log(log, model, given=columns)
+    if found.motion is None:
+        asked = "; ".join(f"{one.place}: {one.text}" for one in found.questions) or "no position of each joint is known"
+        raise RunnerError(
+            f"{log}: {asked}. `runner doctor {log} --robot {robot} -o FOLDER` writes a map to complete for --columns"
+        )
+    torques = [] if found.recording is None else found.recording.of_kind("torque")
+    if not (found.motion.commanded or torques):
+        raise RunnerError(f"{log}: has neither commanded positions nor torques, so that a replay says nothing.")
+    texts = {MOTION: found.motion.text} | ({MAP: map_text(found, None, None)} if columns is None else {})
+    digest = hashlib.sha256("\0".join((robot, *texts.values())).encode()).hexdigest()[:24]
+    folder = outputs / FOLDER / digest
+    for name, text in texts.items():
+        write_atomically(folder / name, text.encode())
+    run = job.run(
+        f"robot={robot}",
+        f"controller={controller}",
+        "trajectory=from_file",
+        f"trajectory.file={folder / MOTION}",
+        "plant=rk4",
+        f"outputs={outputs}",
+        config_dirs=config_dirs,
+    )
+    filled = found.recording is not None and bool(found.recording.filled)
+    return Replay(
+        run, columns or folder / MAP, found.motion.commanded, found.motion.notes, LONGEST_GAP if filled else 0.0
+    )
