@@ -109,9 +109,7 @@ class Values:
 
     def read_by(self, expression: str) -> frozenset[str]:
         """Return the names of the results that an evaluated expression has read, also by the names in it."""
-        source = " ".join(expression.split())
-        own = self._read_by.get(source, frozenset())
-        return own.union(*(self._read_by.get(name, frozenset()) for name in names_in(source)))
+        return self._read_by.get(" ".join(expression.split()), frozenset())
 
     def line_of(self, number: int) -> int:
         """Return the line of the file that became a line of the text without expressions; both count from 1."""
@@ -152,7 +150,7 @@ class Values:
             others = self._read.copy()
             self._read.clear()
             value = scope.evaluate(source, Budget() if instead else self._budget)
-            self._read_by[source] = frozenset(self._read)
+            self._read_by[source] = frozenset(self._read).union(*map(self.read_by, names_in(source)))
             self._read |= others
             return value
         except (ProseError, MissingError):  # what a run that was not made is needed for is left out of the report

@@ -1,0 +1,90 @@
+"""`runner reproduce STUDY --challenge`: written conditions asked anew, with the thesis' old wordings as cases."""
+
+import pytest
+
+from runner.papers.study import challenge
+from runner.papers.study.chapters import Chapters
+from runner.papers.study.execute import make_all
+from runner.papers.study.items import Way
+from runner.papers.study.report import study_document
+from runner.papers.study.study import load_study
+
+ABOUT = "title: T\nsource: S\nabstract: A\nchapters: [one.md]\n"
+TRACKING = """\
+grids:
+  tracking:
+    name: "{{ figure }}"
+    with: ["experiment=thesis/{{ figure }}", preset=full_equations, plant=rk4, repetitions=1]
+    over: {figure: [figure_5_12, macro_alone]}
+"""
+BETTER = """\
+# Was the thesis right?
+
+{% set one = metric("figure_5_12", "max_axis_error", "tracking error of the pair") %}
+{% set alone = metric("macro_alone", "macro_max_axis_error", "tracking error of the Macro alone") %}
+
+::: stands A Mini on top tracks {{ alone / one }} times better than the Macro alone.
+holds: one < 0.02 * alone
+:::
+"""
+GOAL = """\
+grids:
+  goal:
+    name: "{{ figure }}"
+    with: ["experiment=thesis/{{ figure }}", preset=full_equations, plant=bullet, repetitions=1, duration=2]
+    over: {figure: [figure_5_8, macro_alone_goal]}
+  other:
+    name: figure_5_8/rk4
+    with: [experiment=thesis/figure_5_8, preset=full_equations, plant=rk4, repetitions=1, duration=2]
+"""
+SOONER = """\
+# Was the thesis right?
+
+{% set goal = metric("figure_5_8", "settling_time", "settling time of the pair") %}
+{% set goal_alone = metric("macro_alone_goal", "macro_settling_time", "settling time of the Macro alone") %}
+{% set other_engine = metric("figure_5_8/rk4", "settling_time", "settling time of the pair, Runge-Kutta") %}
+
+::: falls It does not reach a goal sooner.
+The engine decides by how much: on Runge-Kutta the pair takes {{ other_engine }}.
+holds: goal > 0.95 * goal_alone
+holds: other_engine < 0.95 * goal
+:::
+"""
+
+
+@pytest.fixture(name="study")
+def _study(tmp_path, monkeypatch):
+    """Write and make a study, and ask its findings anew under some values of the families."""
+
+    def made(runs, chapter, values, chosen=""):
+        folder = tmp_path / "paper"
+        folder.mkdir()
+        for name, text in {"study.yaml": ABOUT, "runs.yaml": runs, "one.md": chapter}.items():
+            (folder / name).write_text(text)
+        monkeypatch.setattr(challenge, "read_values", lambda _: values)
+        study = load_study(str(folder))
+        way = Way(tmp_path / "outputs", ["hydra.sweeper.workers=0"], "runner reproduce", study.config_dirs)
+        chapters = Chapters(study, *make_all(study, way.outputs, way.overrides))
+        document = study_document(chapters)
+        return challenge.challenge_study(chapters, document, way, chosen)
+
+    return made
+
+
+@pytest.mark.costs(4)
+def test_the_old_ratio_of_the_thesis_is_turned_by_other_goals_and_a_slower_motion(study):
+    (found,) = study(TRACKING, BETTER, {"goal": [2], "duration": [2], "noise": [0.333]})
+    answers = {each.label: each.answer for each in found.outcomes}
+    goal = next(label for label in answers if label.startswith("the goal"))
+    assert answers == {"fresh seeds": "holds", goal: "turns", "a motion of 6 s": "turns", "noise times 0.333": "holds"}
+    why = next(each.why for each in found.outcomes if each.label == goal)
+    assert why.startswith("tracking error of the pair < 0.02 times tracking error of the Macro alone: ")
+
+
+@pytest.mark.costs(5)
+def test_the_old_sentence_on_the_goal_is_turned_by_one_engine_for_both_sides(study):
+    (found,) = study(GOAL, SOONER, {"engine": ["bullet", "rk4"]})
+    answers = {each.label: each.answer for each in found.outcomes}
+    assert answers["fresh seeds"] == "holds"
+    assert answers["the engine rk4"] == "turns"
+    assert answers.get("the engine bullet") == "turns", found.left_out  # the same run there
