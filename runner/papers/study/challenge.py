@@ -12,15 +12,15 @@ from typing import Literal
 from runner import store
 from runner.base import progress
 from runner.base.dotted_keys import get
-from runner.base.errors import ConfigError, RunnerError, nearest
+from runner.base.errors import ConfigError, RunnerError
 from runner.base.quantities import ROUNDING
 from runner.config.compose.composer import Composer
 from runner.config.run import RunConfig
+from runner.papers.study.asked import Asked, list_asked
 from runner.papers.study.chapters import Chapters
 from runner.papers.study.items import Way, listed, make_listed
-from runner.papers.study.measured import ANSWERS, Condition, findings
-from runner.papers.study.prose.reader import Box
-from runner.papers.study.results import MissingError, Results
+from runner.papers.study.measured import Condition
+from runner.papers.study.results import Results
 from runner.reporting.document import Document
 from runner.statistics.scope import FEWEST
 from runner.store import Run
@@ -78,30 +78,11 @@ class Challenged:
     moved: Sequence[str] = ()
 
 
-@dataclass(frozen=True)
-class _Asked:
-    """A finding as it is asked.
-
-    Attributes:
-        number: Number of its section.
-        stem: Name of its chapter's file without the ending.
-        box: The finding as written.
-        runs: Names of the runs that its conditions read.
-        wider: Whether it is asked under equivalent choices and conditions, too.
-    """
-
-    number: str
-    stem: str
-    box: Box
-    runs: Sequence[str]
-    wider: bool
-
-
 def challenge_study(chapters: Chapters, document: Document, way: Way, chosen: str = "") -> list[Challenged]:
     """Return the findings of a study with the outcomes of all variations, whose missing runs are made.
 
-    All findings are asked under numerical choices. Answers of the report, and chosen findings, are also asked under
-    equivalent choices and conditions if they compare values of two or more runs.
+    All findings and verdicts on printed numbers are asked under numerical choices. Answers of the report, and chosen
+    findings, are also asked under equivalent choices and conditions if they compare values of two or more runs.
 
     Args:
         chapters: The chapters of the study, with their runs.
@@ -113,40 +94,7 @@ def challenge_study(chapters: Chapters, document: Document, way: Way, chosen: st
         RunnerError: if there is no such finding.
         ConfigError: if the runs cannot be made.
     """
-    asked = list(_choose(_list_findings(chapters, document, bool(chosen)), chosen))
-    return _Challenge(chapters, asked, way).run()
-
-
-def _list_findings(chapters: Chapters, document: Document, all_wider: bool) -> Iterator[_Asked]:
-    """Yield the findings of all chapters in Markdown whose conditions read runs."""
-    numbers = {id(found): number for number, found in findings(document)}
-    for file in chapters.study.manifest.files():
-        stem, _, suffix = file.rpartition(".")
-        if suffix != "md":
-            continue
-        try:
-            boxes = chapters.reading(stem).boxes
-        except MissingError:
-            continue
-        for box in boxes:
-            runs = [name for name in chapters.runs if name in box.read]
-            if runs and id(box.finding) in numbers:
-                wider = all_wider or box.finding.kind in ANSWERS[:3]
-                ratio = len(runs) > 1 and any(len(each.values) > 1 for each in box.finding.conditions)
-                yield _Asked(numbers[id(box.finding)], stem, box, runs, wider and ratio)
-
-
-def _choose(asked: Iterator[_Asked], chosen: str) -> Iterator[_Asked]:
-    every = list(asked)
-    found = [one for one in every if one.number == chosen or one.number.startswith(f"{chosen}.")]
-    found = found or [one for one in every if chosen.lower() in one.box.finding.claim.lower()]
-    if not found:
-        known = [text for one in every for text in (one.number, one.box.finding.claim)]
-        raise RunnerError(
-            f"--challenge: no finding '{chosen}'{nearest(chosen, known)}. Allowed: the number of a section, or words "
-            "of a title."
-        )
-    yield from found
+    return _Challenge(chapters, list_asked(chapters, document, chosen), way).run()
 
 
 class _Challenge:
@@ -158,7 +106,7 @@ class _Challenge:
         way: Settings of the execution.
     """
 
-    def __init__(self, chapters: Chapters, asked: Sequence[_Asked], way: Way) -> None:
+    def __init__(self, chapters: Chapters, asked: Sequence[Asked], way: Way) -> None:
         self._chapters, self._asked, self._way = chapters, asked, way
         self._runs = chapters.runs
         self._own = chapters.study.jobs()
@@ -191,15 +139,15 @@ class _Challenge:
         configs = check_sides([*self._sides.values()], self._way.config_dirs)
         return dict(zip(self._sides, configs, strict=True))
 
-    def _list(self, one: _Asked) -> tuple[list[Variation], list[LeftOut]]:
+    def _list(self, one: Asked) -> tuple[list[Variation], list[LeftOut]]:
         """Return the variations of a finding, first the asked case on fresh seeds, and those that do not apply."""
         case = Case([self._sides[name] for name in one.runs], [self._configs[name] for name in one.runs])
         kinds = ("numbers", *_WIDER) if one.wider else ("numbers",)
         allowed = {name: some for name, some in self._values.items() if FAMILIES[name][0].kind in kinds}
-        values: Values = {name: some for name, some in allowed.items() if name not in one.box.about}
+        values: Values = {name: some for name, some in allowed.items() if name not in one.about}
         found, left = list_variations(case, values)
-        left += [LeftOut(name, "", "the finding compares it itself", "numbers") for name in one.box.about]
-        if "seeds" in one.box.about:
+        left += [LeftOut(name, "", "the finding compares it itself", "numbers") for name in one.about]
+        if "seeds" in one.about:
             return [], left
         fresh = Variation(_FRESH.kind, _FRESH.family, _FRESH.value, _FRESH.label, [[] for _ in one.runs])
         return [fresh, *found], left
@@ -238,7 +186,7 @@ class _Challenge:
                 one = made[str(cell)]
                 self._made[own] = one.missing or finished.open(one.place)
 
-    def _judge(self, one: _Asked, variations: Sequence[Variation], left: Sequence[LeftOut]) -> Challenged:
+    def _judge(self, one: Asked, variations: Sequence[Variation], left: Sequence[LeftOut]) -> Challenged:
         outcomes, moved, more = [], list[str](), list(left)
         asked: list[Condition] = []
         for variation in variations:
@@ -256,15 +204,15 @@ class _Challenge:
             if variation.family == "step":
                 moved += list(_moved(asked, conditions))
         progress.step()
-        return Challenged(one.number, one.box.finding.claim, outcomes, more, list(dict.fromkeys(moved)))
+        return Challenged(one.number, one.title, outcomes, more, list(dict.fromkeys(moved)))
 
-    def _ask(self, one: _Asked, variation: Variation, runs: Mapping[str, Run]) -> tuple[Outcome, list[Condition]]:
+    def _ask(self, one: Asked, variation: Variation, runs: Mapping[str, Run]) -> tuple[Outcome, list[Condition]]:
         old = self._runs
         results = Results({**old, **runs}, old.missing, old.dropped, old.parts)
         chapters = Chapters(self._chapters.study, results, self._chapters.calibrations)
         answer: Answer = "cannot be asked"
         try:
-            conditions = chapters.ask(one.stem, one.box.stated)
+            conditions = one.ask(chapters)
         except RunnerError as error:
             return Outcome(variation.kind, variation.family, variation.label, answer, str(error)), []
         failed = [each for each in conditions if not each.holds]

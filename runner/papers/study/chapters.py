@@ -129,7 +129,7 @@ class Chapters:
             "equations": self._equations,
             "statements": self._statements,
             "said": self.said,
-            "compare": partial(compare, self.runs, presets, self._published()),
+            "compare": partial(compare, self.runs, presets, self.published),
         }
         for module in SHARED:
             found |= _filled(public_functions(module), {"runs": self._stored})
@@ -148,15 +148,16 @@ class Chapters:
         return both
 
     def _claims(self) -> list[Claim]:
-        return judged_claims(self._published(), self.runs, self.study.manifest.presets)
+        return judged_claims(self.published, self.runs, self.study.manifest.presets)
 
-    def _published(self) -> list[PublishedClaim]:
-        """Return its claims; none if it has no file of them."""
+    @cached_property
+    def published(self) -> list[PublishedClaim]:
+        """The claims of the study; none if it has no file of them."""
         return load_claims(self.study.folder) if (self.study.folder / CLAIMS).is_file() else []
 
     def _legend(self) -> str:
         """Return the meaning of the words of its verdicts; empty without claims."""
-        return legend(self._published())
+        return legend(self.published)
 
     def _claims_that(self, verdict: Verdict, words: str, preset: str = "") -> Measured:
         """Return the number of claims with this verdict under a preset, or without one under all presets."""
