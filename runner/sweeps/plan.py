@@ -126,7 +126,8 @@ class Plan(ABC):
     def _compose(self, options: Sequence[str], keys: Sequence[SweptKey], root: str) -> Template | ConfigError:
         own = self._source.config_dirs
         try:
-            return Template(self._source.load(options, root), root, own, keys)
+            places = self._source.places.setdefault((root, *options), {})
+            return Template(self._source.load(options, root), root, own, keys, places)
         except ConfigError as error:
             return error
 

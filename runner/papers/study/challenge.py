@@ -136,7 +136,7 @@ class _Challenge:
 
     @cached_property
     def _configs(self) -> Mapping[str, RunConfig]:
-        configs = check_sides([*self._sides.values()], self._way.config_dirs)
+        configs = check_sides([*self._sides.values()], self._loader)
         return dict(zip(self._sides, configs, strict=True))
 
     def _list(self, one: Asked) -> tuple[list[Variation], list[LeftOut]]:

@@ -40,6 +40,7 @@ class Bench:
     Args:
         case: The asked case.
         question: Its question.
+        composer: Composer of the configs.
         keys: Keys that some run changes.
         folder: Folder of the challenge.
         outputs: The outputs folder.
@@ -52,11 +53,18 @@ class Bench:
     """
 
     def __init__(
-        self, case: Case, question: Question, keys: Sequence[str], folder: Path, outputs: Path, engine: Engine,
+        self,
+        case: Case,
+        question: Question,
+        composer: Composer,
+        keys: Sequence[str],
+        folder: Path,
+        outputs: Path,
+        engine: Engine,
         command: str,
-    ) -> None:  # fmt: skip
+    ) -> None:
         self._case, self._keys, self._folder, self._outputs, self._engine = case, keys, folder, outputs, engine
-        self._question, self._command, self._composer = question, command, Composer(question.config_dirs)
+        self._question, self._composer, self._command = question, composer, command
         self._drawn: dict[Cell, Drawn] = {}
         self._names: dict[Cell, str] = {}
         self.jobs: list[tuple[Sequence[str], str]] = []

@@ -3,7 +3,6 @@
 from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import cached_property
-from pathlib import Path
 from typing import Any
 
 from runner.base.arrays import FloatArray
@@ -57,8 +56,12 @@ def own_overrides(overrides: Sequence[str]) -> tuple[str, ...]:
     return tuple(text for text in overrides if text.partition("=")[0] not in DRAWN and is_simulated(text))
 
 
-def check_case(question: Question) -> Case:
+def check_case(question: Question, composer: Composer | None = None) -> Case:
     """Check the configs of both sides of a question.
+
+    Args:
+        question: The question.
+        composer: Composer of the configs; None for a new one.
 
     Raises:
         ConfigError: if a side can no longer be composed.
@@ -67,17 +70,18 @@ def check_case(question: Question) -> Case:
     if question.error and question.size:
         largest = max(abs(side.medians.get(question.metric, 0.0)) for side in question.sides)
         step = _TENTH * abs(question.size) * largest / question.error
-    return Case(question.sides, check_sides(question.sides, question.config_dirs), step)
+    composer = composer or Composer(question.config_dirs)
+    return Case(question.sides, check_sides(question.sides, composer), step)
 
 
-def check_sides(sides: Sequence[Side], config_dirs: Sequence[Path]) -> list[RunConfig]:
+def check_sides(sides: Sequence[Side], composer: Composer) -> list[RunConfig]:
     """Return the checked config of each side.
 
     Raises:
         ConfigError: if one can no longer be composed.
     """
     items = {str(place): Item(tuple(side.overrides)) for place, side in enumerate(sides)}
-    plan = Listed(items, (), Composer(config_dirs))
+    plan = Listed(items, (), composer)
     jobs = [check_job(plan.composed(cell)) for cell in range(len(plan))]
     runs = [job.config for job in jobs if isinstance(job, RunJob)]
     if len(runs) != len(sides):

@@ -74,7 +74,8 @@ def challenge(
         TemporaryError: if a run cannot be written, or a worker fails.
     """
     began = time.monotonic()
-    case, composer = check_case(question), Composer(question.config_dirs)
+    composer = Composer(question.config_dirs)
+    case = check_case(question, composer)
     variations, left = list_variations(case, values)
     keys = changed_keys([text for one in variations for text in chain(*one.sides)])
     cells = [(side, tuple(more)) for one in variations for side, more in enumerate(one.sides)]
@@ -93,7 +94,7 @@ def challenge(
     made = Challenge(folder, question, kept, left, command, combined=combined, budget=budget.text)
     with at_work(folder, exclusive=True) as name:
         keys = changed_keys([*keys, "seed=", "repetitions="])
-        bench = Bench(case, question, keys, folder, outputs, engine, name)
+        bench = Bench(case, question, composer, keys, folder, outputs, engine, name)
         has_ended = _has_ended(made)
         if not has_ended:
             made.write(bench.jobs)
