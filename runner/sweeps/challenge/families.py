@@ -60,7 +60,12 @@ def _engine(case: Case, value: Value) -> Change:
         raise LeftOutError("the plant is not driven by torques")
     if kinds == {value}:
         raise LeftOutError("")
-    return _all(case, f"the engine {value}", [f"plant={value}"])
+    sides = []
+    for config in case.configs:
+        own = PLANTS.features(str(value)).default_step(config.timing.tick, len(config.arm.stages))
+        coarse = config.plant.step is not None and config.timing.step > own  # of an engine of higher order
+        sides.append([f"plant={value}", *(["plant.step=null"] if coarse else [])])
+    return Change(f"the engine {value}", sides)
 
 
 def _step(case: Case, value: Value) -> Change:
