@@ -49,6 +49,10 @@ def list_asked(chapters: Chapters, document: Document, chosen: str = "") -> list
         RunnerError: if there is none.
     """
     every = [*_list_findings(chapters, document, bool(chosen)), *_list_claims(chapters)]
+    if not every:
+        raise RunnerError(
+            "--challenge: no condition of a chapter in Markdown reads a run. Allowed: a study with findings."
+        )
     return _choose(every, chosen)
 
 

@@ -34,7 +34,6 @@ from runner.sweeps.plan import Item
 
 _MOVED = 0.1  # relative change of a value by a finer step that is said
 _WIDER: Sequence[Class] = ("equivalent", "conditions")
-_FRESH = Variation("numbers", "seeds", "fresh", "fresh seeds", ())
 
 Overrides = tuple[str, ...]
 Answer = Literal["holds", "turns", "cannot be asked"]
@@ -149,7 +148,7 @@ class _Challenge:
         left += [LeftOut(name, "", "the finding compares it itself", "numbers") for name in one.about]
         if "seeds" in one.about:
             return [], left
-        fresh = Variation(_FRESH.kind, _FRESH.family, _FRESH.value, _FRESH.label, [[] for _ in one.runs])
+        fresh = Variation("numbers", "seeds", "fresh", "fresh seeds", [[] for _ in one.runs])
         return [fresh, *found], left
 
     def _changed(self, name: str, more: Sequence[str]) -> Overrides:
@@ -179,6 +178,8 @@ class _Challenge:
             except ConfigError as error:
                 self._made[own] = error.problems[0]
             progress.step()
+        if not good:
+            return
         made = make_listed(plan.only(good), map(str, good), self._way, self._loader)
         finished = store.Finished(self._way.outputs)
         for cell, own in enumerate(wanted):

@@ -80,6 +80,8 @@ def scope_section(found: Sequence[Challenged]) -> Section:
 
 def _labels(one: Challenged, answer: Answer) -> str:
     """Return the changes with an answer; the title of a family if all of its values have it."""
+    if answer == "holds" and not one.outcomes:
+        return "not asked"
     texts = []
     for each in one.outcomes:
         if each.answer == answer:

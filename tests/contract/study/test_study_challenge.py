@@ -186,3 +186,12 @@ def test_values_that_a_finer_step_moves_are_said():
     assert list(challenge._moved(conditions(1.6), conditions(1.3))) == ["time of the pair: 1.6 s to 1.3 s"]
     assert list(challenge._moved(conditions(1.6), conditions(1.5))) == []
     assert list(challenge._moved(conditions(1.6), conditions(None))) == []
+
+
+@pytest.mark.costs(3)
+def test_a_finding_about_seeds_is_not_asked(cli, engines):
+    chapter = engines / "one.md"
+    chapter.write_text(chapter.read_text().replace("about: engine", "about: seeds"))
+    ending = cli("reproduce", "two_engines", "--challenge", "which is what it says", HERE)
+    assert ending.code == 0
+    assert ending.out.splitlines()[1].split("  ")[-1].strip() == "not asked"
