@@ -16,7 +16,7 @@ from runner.reporting.document import Document
 
 @dataclass(frozen=True)
 class Asked:
-    """A finding or the verdict on a claim, as it is asked.
+    """A finding or the verdict on a claim, with its conditions.
 
     Attributes:
         number: Number of its section; that of the claim.

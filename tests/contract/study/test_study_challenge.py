@@ -24,7 +24,7 @@ BETTER = """\
 {% set one = metric("figure_5_12", "max_axis_error", "tracking error of the pair") %}
 {% set alone = metric("macro_alone", "macro_max_axis_error", "tracking error of the Macro alone") %}
 
-::: stands A Mini on top tracks {{ alone / one }} times better than the Macro alone.
+::: stands A Mini on top tracks {{ alone / one }} times better than the Macro.
 holds: one < 0.02 * alone
 :::
 """
