@@ -22,10 +22,10 @@ BETTER = """\
 # Was the thesis right?
 
 {% set one = metric("figure_5_12", "max_axis_error", "tracking error of the pair") %}
-{% set alone = metric("macro_alone", "macro_max_axis_error", "tracking error of the Macro alone") %}
+{% set macro = metric("macro_alone", "macro_max_axis_error", "tracking error of the Macro") %}
 
-::: stands A Mini on top tracks {{ alone / one }} times better than the Macro.
-holds: one < 0.02 * alone
+::: stands A Mini on top tracks {{ macro / one }} times better than the Macro.
+holds: one < 0.02 * macro
 :::
 """
 GOAL = """\
@@ -79,7 +79,7 @@ def test_the_old_ratio_of_the_thesis_is_turned_by_other_goals_and_a_slower_motio
     goal = next(label for label in answers if label.startswith("the goal"))
     assert answers == {"fresh seeds": "holds", goal: "turns", "a motion of 6 s": "turns", "noise times 0.333": "holds"}
     why = next(each.why for each in found.outcomes if each.label == goal)
-    assert why.startswith("tracking error of the pair < 0.02 times tracking error of the Macro alone: ")
+    assert why.startswith("tracking error of the pair < 0.02 times tracking error of the Macro: ")
 
 
 @pytest.mark.costs(5)
