@@ -200,20 +200,21 @@ class Parser(argparse.ArgumentParser):
         return super().parse_known_args(self._sorted(words) if self._options_first else words, namespace)
 
     def _sorted(self, words: Sequence[str]) -> list[str]:
-        """Return the words with the options first; an option whose value is missing is last."""
+        """Return the words with the options first; options without their value are last."""
         options: list[str] = []
         others: list[str] = []
-        rest = iter(words)
-        for word in rest:
+        last: list[str] = []
+        left = list(words)
+        while left:
+            word = left.pop(0)
             action = self._option_string_actions.get(word)
-            if action is not None and action.nargs != 0:
-                value = next(rest, None)
-                if value is None:
-                    return [*options, *others, word]
-                options += [word, value]
-            else:
+            if action is None or action.nargs == 0:
                 (options if word.startswith("-") else others).append(word)
-        return [*options, *others]
+            elif left and (action.nargs != "?" or not (left[0].startswith("-") or "=" in left[0])):
+                options += [word, left.pop(0)]
+            else:
+                last.append(word)
+        return [*options, *others, *last]
 
     def _get_value(self, action: argparse.Action, arg_string: str) -> Any:
         """Return the value of an argument; completion takes any word, because an earlier word may be wrong."""

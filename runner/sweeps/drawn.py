@@ -29,7 +29,7 @@ def draws_model(config: Mapping[str, Any]) -> bool:
 
 
 def _is_positive(value: object) -> bool:
-    """Return True if a number, or one of a list, is above zero."""
-    if isinstance(value, list):
-        return any(map(_is_positive, value))
+    """Return True if a number, or one of a list or of several stages, is above zero."""
+    if isinstance(value, list | Mapping):
+        return any(map(_is_positive, value.values() if isinstance(value, Mapping) else value))
     return isinstance(value, int | float) and value > 0

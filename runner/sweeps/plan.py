@@ -1,5 +1,6 @@
 """Plan of a sweep: cells that are composed on demand, as a grid for `runner -m` and as a list for a study."""
 
+import copy
 import math
 from abc import ABC, abstractmethod
 from collections.abc import Hashable, Iterator, Mapping, Sequence
@@ -125,7 +126,8 @@ class Plan(ABC):
     def _compose(self, options: Sequence[str], keys: Sequence[SweptKey], root: str) -> Template | ConfigError:
         own = self._source.config_dirs
         try:
-            return Template(self._source.load(options, root), root, own, keys)
+            places = self._source.places.setdefault((root, *options), {})
+            return Template(self._source.load(options, root), root, own, keys, places)
         except ConfigError as error:
             return error
 
@@ -266,6 +268,13 @@ class Listed(Plan):
 
     def __len__(self) -> int:
         return len(self._items)
+
+    def only(self, cells: Sequence[int]) -> "Listed":
+        """Return the plan of some of the cells, which shares what is composed."""
+        chosen = copy.copy(self)
+        chosen._items = tuple(self._items[cell] for cell in cells)
+        chosen._places = [self._places[cell] for cell in cells]
+        return chosen
 
     def overrides(self, cell: int) -> tuple[str, ...]:
         """Return the overrides of a cell; see Plan."""

@@ -29,6 +29,7 @@ from runner.store.kinds import note, report_place
 
 if TYPE_CHECKING:
     from runner.cli.commands import Compose
+    from runner.papers.study.chapters import Chapters
     from runner.papers.study.code import UserPlugin
     from runner.papers.study.expected_caveats import ExpectedCaveat
     from runner.papers.study.study import Study
@@ -36,18 +37,23 @@ if TYPE_CHECKING:
     from runner.store import Calibration, Run
 
 AUDIT = "audit"
+_TITLE = 60  # characters of a finding's title in a table
 _FREE = ("hydra.sweeper.", "sweep.", "limits.", "caveats.")
 
 
 @dataclass(frozen=True)
 class _Reproduced:
-    """Result of a study: report, runs by name, reasons for missing runs, expected caveats, problems of `--check`."""
+    """Result of a study: report, runs by name, reasons for missing runs, expected caveats, problems of `--check`.
+
+    The lines on the scope of its findings are empty without a challenge.
+    """
 
     document: "Document"
     runs: "Mapping[str, Run]"
     missing: Mapping[str, str]
     expected: "Sequence[ExpectedCaveat]" = ()
     problems: Sequence[str] = ()
+    scope: Sequence[str] = ()
     calibrations: "Mapping[str, Calibration]" = field(default_factory=dict)
 
 
@@ -72,6 +78,13 @@ def add_arguments(parser: Parser) -> None:
         metavar="P",
         help="smaller or larger version, by its name in study.yaml (default: the study's)",
     )
+    parser.add_argument(
+        "--challenge",
+        nargs="?",
+        const="",
+        metavar="FINDING",
+        help="ask the condition of each finding, or of those of a section or title, with one choice changed at a time",
+    )
     parser.add_argument("--code", action="store_true", help="run the Python of FOLDER")
 
 
@@ -85,6 +98,8 @@ def run(options: Namespace) -> int:
         raise RunnerError(f"reproduce: the study decides what it simulates ({others[0]}). Allowed: {allowed}.")
     if options.study == AUDIT and (options.code or options.profile):
         raise RunnerError("--code and --profile: not for the audit, which runs no study. Allowed: with a study.")
+    if options.challenge is not None and options.study in (AUDIT, "all"):
+        raise RunnerError(f"--challenge: not for {options.study}, which has several sources. Allowed: one study.")
     if options.study not in (AUDIT, "all"):
         find_study(options.study, (AUDIT, "all"))  # rejects an unknown name before anything is read
     plugins = [word for text in named_parts() for word in ("--plugin", text)]
@@ -94,6 +109,8 @@ def run(options: Namespace) -> int:
     made = {}
     for study in _chosen(options):
         name, made[name] = _reproduce(study, options)
+        for line in made[name].scope:
+            print(line, file=sys.stderr if options.json else None)
         print(options.output / "reports" / name, file=sys.stderr if options.json else None)
     if options.json:
         print(_conclusions(made), end="")
@@ -174,9 +191,29 @@ def _reproduce_study(study: "Study", options: Namespace) -> _Reproduced:
     for line in late:
         print(f"runner: {study.name}: {line}", file=sys.stderr)
     found = [*problems(chapters, document)] if options.check else []
+    scope: list[str] = []
+    if options.challenge is not None:
+        document, scope, turned = _challenge(chapters, document, options)
+        found += turned if options.check else []
     for line in [] if options.check else formulas_at(study, document):
         print(f"runner: {line}", file=sys.stderr)
-    return _Reproduced(document, runs, missing, study.expected, found, calibrations)
+    return _Reproduced(document, runs, missing, study.expected, found, scope, calibrations)
+
+
+def _challenge(
+    chapters: "Chapters", document: "Document", options: Namespace
+) -> "tuple[Document, list[str], list[str]]":
+    """Return a report with the scope of its findings, the lines to print, and those that numerical choices turn."""
+    from runner.papers.study.challenge import challenge_study
+    from runner.papers.study.items import Way
+    from runner.papers.study.scope import scope_section, scope_table, turned_lines, unsettled
+    from runner.reporting.table import terminal
+
+    way = Way(options.output, options.overrides, options.command, chapters.study.config_dirs)
+    found = challenge_study(chapters, document, way, options.challenge)
+    document = replace(document, sections=[*document.sections, scope_section(found)])
+    lines = [terminal(scope_table(found, _TITLE), indent=""), "", *turned_lines(found), ""]
+    return document, lines, [*unsettled(found)]
 
 
 def _audit(folder: Path) -> _Reproduced:

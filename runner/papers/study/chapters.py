@@ -28,10 +28,11 @@ from runner.papers.reporting.published_claims import (
 from runner.papers.study.claims import judged_claims, judged_statements, legend
 from runner.papers.study.code import public_functions
 from runner.papers.study.manifest import Part
-from runner.papers.study.measured import Finding, Measured
+from runner.papers.study.measured import Condition, Finding, Measured
 from runner.papers.study.prose import blocks, plots, read_chapter, signals, tables
 from runner.papers.study.prose.compared import compare
-from runner.papers.study.prose.reader import Reading
+from runner.papers.study.prose.expressions import Values, needed_names
+from runner.papers.study.prose.reader import Reading, Stated, conditions_of
 from runner.papers.study.results import LeftOutError, MissingError, Results, Runs
 from runner.papers.study.study import Study
 from runner.reporting.document import Notice, Origin, Section, Text
@@ -70,6 +71,7 @@ class Chapters:
     def said(self, stem: str) -> dict[str, Any]:
         """Return the named numbers and strings of a chapter in Markdown, and as `holds` whether its findings hold."""
         made = self.reading(stem)
+        self.runs.read.update(*(box.read for box in made.boxes))
         everything = [block for each in number_sections([made.section]) for block in each.section.blocks]
         holds = all(each.holds for each in everything if isinstance(each, Finding))
         return {"holds": holds, **{name: value for name, value in made.values.named.items() if _is_plain(value)}}
@@ -88,9 +90,22 @@ class Chapters:
             file = f"{stem}.md"
             values = self.study.code.values(_FIGURES) + self.study.code.values(stem)
             self._readings[stem] = read_chapter(
-                f"{self.study.folder.name}/{file}", self._text(file), self.names(stem), values
+                f"{self.study.folder.name}/{file}", self._text(file), self.names(stem), values, self.runs.read
             )
         return self._readings[stem]
+
+    def ask(self, stem: str, stated: Sequence[Stated]) -> list[Condition]:
+        """Return some conditions of a chapter in Markdown, of which nothing else is evaluated.
+
+        Raises:
+            ProseError: if a condition or a value in it cannot be evaluated.
+            MissingError: if it needs what was not made.
+        """
+        file = f"{self.study.folder.name}/{stem}.md"
+        text = self._text(f"{stem}.md")
+        values = Values(file, self.names(stem), self.study.code.values(_FIGURES) + self.study.code.values(stem))
+        values.name_values(text, needed_names(text, [each.expression for each in stated]))
+        return [condition for each in stated for condition in conditions_of(file, each, values)]
 
     def names(self, stem: str) -> dict[str, Any]:
         """Return the functions and values that a chapter in Markdown may use, by name.
@@ -114,7 +129,7 @@ class Chapters:
             "equations": self._equations,
             "statements": self._statements,
             "said": self.said,
-            "compare": partial(compare, self.runs, presets, self._published()),
+            "compare": partial(compare, self.runs, presets, self.published),
         }
         for module in SHARED:
             found |= _filled(public_functions(module), {"runs": self._stored})
@@ -128,18 +143,21 @@ class Chapters:
         """Return runs and calibrations in one."""
         runs, calibrations = self.runs, self.calibrations
         missing = {**runs.missing, **calibrations.missing}
-        return Results({**runs, **calibrations}, missing, runs.dropped, runs.parts)
+        both: Results[Run | Calibration] = Results({**runs, **calibrations}, missing, runs.dropped, runs.parts)
+        both.read = runs.read
+        return both
 
     def _claims(self) -> list[Claim]:
-        return judged_claims(self._published(), self.runs, self.study.manifest.presets)
+        return judged_claims(self.published, self.runs, self.study.manifest.presets)
 
-    def _published(self) -> list[PublishedClaim]:
-        """Return its claims; none if it has no file of them."""
+    @cached_property
+    def published(self) -> list[PublishedClaim]:
+        """The claims of the study; none if it has no file of them."""
         return load_claims(self.study.folder) if (self.study.folder / CLAIMS).is_file() else []
 
     def _legend(self) -> str:
         """Return the meaning of the words of its verdicts; empty without claims."""
-        return legend(self._published())
+        return legend(self.published)
 
     def _claims_that(self, verdict: Verdict, words: str, preset: str = "") -> Measured:
         """Return the number of claims with this verdict under a preset, or without one under all presets."""

@@ -26,6 +26,7 @@ from runner.papers.reporting.published_claims import (
     scale_bound,
     verdict_on,
 )
+from runner.papers.study.measured import Measured
 from runner.papers.study.results import MissingError
 from runner.papers.study.study import Study
 from runner.reporting.words import PLANT
@@ -72,6 +73,25 @@ def judged_claims(claims: Sequence[PublishedClaim], runs: Mapping[str, Run], pre
         MissingError: if a claim's run was not made, or one that it is compared with gave no value.
     """
     return [_Claimed(claim, claims, runs, presets).block() for claim in claims]
+
+
+def judge_number(
+    claim: PublishedClaim, claims: Sequence[PublishedClaim], runs: Mapping[str, Run], preset: str
+) -> tuple[Measured, Verdict]:
+    """Return the median of a claim's number under a preset, and the verdict on it; "undecided" if its run failed.
+
+    Raises:
+        MissingError: if a run was not made, or there is nothing to compare with.
+    """
+    run = runs[run_name(claim.simulated_by[0], preset)]
+    value = run.median(claim.metric) if claim.metric in run.metrics else None
+    measured = Measured(f"claim {claim.number}", value, claim.unit)
+    if run.status == "failed" or not claim.metric:
+        return measured, "undecided"
+    verdict = verdict_on(claim, claims, lambda name, metric: runs[run_name(name, preset)].median(metric))
+    if verdict is None:
+        raise MissingError(f"claim {claim.number}: there is nothing to compare it with under {preset}")
+    return measured, verdict
 
 
 def judged_statements(

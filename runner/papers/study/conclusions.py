@@ -45,7 +45,9 @@ def conclusions(
                 "title": found.claim,
                 "text": without_marks(found.sentences),
                 "holds": found.holds,
-                "conditions": [vars(condition) for condition in found.conditions],
+                "conditions": [
+                    {"text": each.text, "holds": each.holds, "measured": each.measured} for each in found.conditions
+                ],
             }
             for number, found in findings(document)
         ],

@@ -1,6 +1,6 @@
 """Execution of the missing runs and calibrations of a study by the sweep engine."""
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Literal
@@ -63,10 +63,14 @@ def make_items(items: Mapping[str, Item], way: Way, trace: Literal["all", "never
         RunnerError: if the Dask scheduler does not answer.
     """
     loader = Composer(way.config_dirs)
+    return make_listed(listed(items, way, loader, trace), items, way, loader)
+
+
+def make_listed(plan: Listed, names: Iterable[str], way: Way, loader: Composer) -> dict[str, MadeItem]:
+    """Make the runs and calibrations of a plan that are not stored yet, by their names; see `make_items`."""
     sweeper = loader.sweeper([text for text in way.overrides if text.startswith("hydra.")])
-    plan = listed(items, way, loader, trace)
     ended = run_sweep(plan, Engine(sweeper.workers, sweeper.address), way.command, accept_cut_short=False)
-    places = zip(items, ended.names, strict=True)
+    places = zip(names, ended.names, strict=True)
     return {name: MadeItem(place, ended.ends.get(place)) for name, place in places}
 
 

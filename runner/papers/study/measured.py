@@ -22,11 +22,13 @@ class Condition:
         text: The condition, written out.
         holds: Whether it is true; a value that is missing makes it false.
         measured: The values in it with their names.
+        values: The values, without numbers that are typed into it.
     """
 
     text: str
     holds: bool
     measured: str
+    values: tuple[Measured, ...] = ()
 
     def __bool__(self) -> bool:
         """Refuse: a branch of prose that hangs on a condition says something that no condition guards."""
@@ -128,11 +130,12 @@ def _literal(part: Measured) -> str:
 
 
 def _condition(text: str, left: Measured, right: Measured, holds: Callable[[float, float], bool]) -> Condition:
-    parts = dict.fromkeys(part for side in (left, right) for part in (side.parts or (side,)))
-    told = [f"{part.name}: {part if _has(part) else 'has no value'}" for part in parts if part.name != _literal(part)]
+    found = dict.fromkeys(part for side in (left, right) for part in (side.parts or (side,)))
+    parts = tuple(part for part in found if part.name != _literal(part))
+    told = [f"{part.name}: {part if _has(part) else 'has no value'}" for part in parts]
     known = left.value is not None and right.value is not None and _has(left) and _has(right)
     true = known and holds(float(left.value or 0.0), float(right.value or 0.0))
-    return Condition(text, bool(true), "; ".join(told))
+    return Condition(text, bool(true), "; ".join(told), parts)
 
 
 def _has(part: Measured) -> bool:

@@ -60,6 +60,8 @@ class Results(dict[str, Thing]):
         for name, own in self.parts.items():
             for place, (_, text) in enumerate(own):
                 self._named.setdefault((len(own), place, text), {})[name] = None
+        self.read: set[str] = set()
+        """Names of those that were read."""
         self.derived: dict[object, Any] = {}
         """Values that a study computes from all results, by the keys that it chooses."""
 
@@ -77,6 +79,10 @@ class Results(dict[str, Thing]):
         named: list[Mapping[str, object]] = [self._named.get(word, {}) for word in words] or [self.parts]
         rarest, *others = sorted(named, key=len)
         return [name for name in rarest if all(name in other for other in others)]
+
+    def __getitem__(self, name: str) -> Thing:
+        self.read.add(name)
+        return super().__getitem__(name)
 
     def __missing__(self, name: str) -> Thing:
         if name in self.missing:

@@ -14,24 +14,22 @@ from runner.store.finished import Finished
 from runner.sweeps.challenge.case import Case
 from runner.sweeps.challenge.changed import Cell, Changed
 from runner.sweeps.challenge.drawn import Drawn, join, read_drawn
+from runner.sweeps.challenge.question import Question
 from runner.sweeps.check import check
 from runner.sweeps.run import Engine, make_missing, make_rules
 from runner.sweeps.writer import TraceKeeping
 
 
 class Change(Protocol):
-    """Overrides that A and B get.
+    """Overrides that both sides get.
 
     Attributes:
-        a: Those of A.
-        b: Those of B.
+        sides: Those of A and of B.
         exact: True if neither side draws anything with them.
     """
 
     @property
-    def a(self) -> Sequence[str]: ...  # noqa: D102
-    @property
-    def b(self) -> Sequence[str]: ...  # noqa: D102
+    def sides(self) -> Sequence[Sequence[str]]: ...  # noqa: D102
     @property
     def exact(self) -> bool: ...  # noqa: D102
 
@@ -41,6 +39,8 @@ class Bench:
 
     Args:
         case: The asked case.
+        question: Its question.
+        composer: Composer of the configs.
         keys: Keys that some run changes.
         folder: Folder of the challenge.
         outputs: The outputs folder.
@@ -53,10 +53,18 @@ class Bench:
     """
 
     def __init__(
-        self, case: Case, keys: Sequence[str], folder: Path, outputs: Path, engine: Engine, command: str
+        self,
+        case: Case,
+        question: Question,
+        composer: Composer,
+        keys: Sequence[str],
+        folder: Path,
+        outputs: Path,
+        engine: Engine,
+        command: str,
     ) -> None:
         self._case, self._keys, self._folder, self._outputs, self._engine = case, keys, folder, outputs, engine
-        self._command, self._composer = command, Composer(case.question.config_dirs)
+        self._question, self._composer, self._command = question, composer, command
         self._drawn: dict[Cell, Drawn] = {}
         self._names: dict[Cell, str] = {}
         self.jobs: list[tuple[Sequence[str], str]] = []
@@ -102,9 +110,9 @@ class Bench:
 
     def _cells(self, change: Change, size: int, blocks: int, first: int = 0) -> list[list[Cell]]:
         """Return the runs of A, and of B, one for each block."""
-        seeds = [self._case.question.seed + first + block for block in range(1 if change.exact else blocks)]
+        seeds = [self._question.seed + first + block for block in range(1 if change.exact else blocks)]
         repetitions = f"repetitions={1 if change.exact else size}"
-        sides = enumerate((change.a, change.b))
+        sides = enumerate(change.sides)
         return [[(side, (*more, f"seed={seed}", repetitions)) for seed in seeds] for side, more in sides]
 
     def _simulate(self, cells: Sequence[Cell], trace: TraceKeeping) -> None:
@@ -120,4 +128,4 @@ class Bench:
             if cell not in self._names:
                 self.jobs.append((plan.overrides(number), name))
             self._names[cell] = name
-            self._drawn[cell] = read_drawn(finished.open(name), self._case.question.metric)
+            self._drawn[cell] = read_drawn(finished.open(name), self._question.metric)

@@ -30,7 +30,7 @@ class Changed(Listed):
     def __init__(
         self, case: Case, cells: Sequence[Cell], keys: Sequence[str], shared: Sequence[str], loader: Composer
     ) -> None:
-        sides = case.question.sides
+        sides = case.sides
         self._own = [(*sides[side].overrides, *more) for side, more in cells]
         filled = [list(_filling(case, side, keys)) for side in range(len(sides))]
         items = {

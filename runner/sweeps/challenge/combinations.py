@@ -2,6 +2,7 @@
 
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
+from itertools import chain
 
 import numpy as np
 
@@ -21,16 +22,14 @@ class Combined:
 
     Attributes:
         labels: What is changed, in words.
-        a: Overrides that A gets.
-        b: Overrides that B gets.
+        sides: Overrides that each side gets.
         exact: True if neither side draws anything.
         pairs: Number of pairs; 0 if the budget cut it.
         effect: Difference of B from A relative to the scale of the variations; None if a side does not work.
     """
 
     labels: Sequence[str]
-    a: Sequence[str]
-    b: Sequence[str]
+    sides: Sequence[Sequence[str]]
     exact: bool = False
     pairs: int = 0
     effect: float | None = None
@@ -65,8 +64,7 @@ def combine(variations: Sequence[Variation], seed: int) -> Iterator[Combined]:
         parts = [some[place] for place in sorted(chosen)]
         yield Combined(
             [part.label for part in parts],
-            [text for part in parts for text in part.a],
-            [text for part in parts for text in part.b],
+            [list(chain(*texts)) for texts in zip(*(part.sides for part in parts), strict=True)],
         )
 
 
@@ -75,4 +73,4 @@ def _fit(one: Variation, other: Variation) -> bool:
 
 
 def _keys(one: Variation) -> set[str]:
-    return {split_override(text)[0] for text in (*one.a, *one.b)}
+    return {split_override(text)[0] for text in chain(*one.sides)}

@@ -12,7 +12,7 @@ from runner.sweeps.challenge.case import Case
 from runner.sweeps.challenge.goals import ends_of
 from runner.sweeps.challenge.question import Class, Value, Variation
 
-_TENTH = 0.1  # of the difference: integration error that a finer step must reach
+_MOTION = ("trajectory", "robot")  # groups that all sides share if a goal is changed
 
 
 class LeftOutError(Exception):
@@ -21,18 +21,16 @@ class LeftOutError(Exception):
 
 @dataclass(frozen=True)
 class Change:
-    """A change of both sides.
+    """A change of all sides.
 
     Attributes:
         label: What is changed, such as "a motion of 6 s".
-        a: Overrides that A gets.
-        b: Overrides that B gets.
-        exact: True if neither side draws anything with them.
+        sides: Overrides that each side gets.
+        exact: True if no side draws anything with them.
     """
 
     label: str
-    a: Sequence[str]
-    b: Sequence[str]
+    sides: Sequence[Sequence[str]]
     exact: bool = False
 
 
@@ -61,19 +59,18 @@ def _engine(case: Case, value: Value) -> Change:
         raise LeftOutError("the plant is not driven by torques")
     if kinds == {value}:
         raise LeftOutError("")
-    return _both(f"the engine {value}", [f"plant={value}"])
+    sides = []
+    for config in case.configs:
+        own = PLANTS.features(str(value)).default_step(config.timing.tick, len(config.arm.stages))
+        coarse = config.plant.step is not None and config.timing.step > own  # of an engine of higher order
+        sides.append([f"plant={value}", *(["plant.step=null"] if coarse else [])])
+    return Change(f"the engine {value}", sides)
 
 
 def _step(case: Case, value: Value) -> Change:
-    question = case.question
-    share = float(value)
-    if question.error and question.size:
-        largest = max(abs(side.medians.get(question.metric, 0.0)) for side in question.sides)
-        share = min(share, _TENTH * abs(question.size) * largest / question.error)
-    divisor = max(2, math.ceil(1.0 / share - 1e-9))
+    divisor = max(2, math.ceil(1.0 / min(float(value), case.most_step) - 1e-9))
     steps = [config.timing.step / divisor for config in case.configs]
-    label = f"a step {divisor} times finer"
-    return Change(label, [f"plant.step={_text(steps[0])}"], [f"plant.step={_text(steps[1])}"])
+    return Change(f"a step {divisor} times finer", [[f"plant.step={_text(step)}"] for step in steps])
 
 
 def _goal(case: Case, value: Value) -> Change:
@@ -82,20 +79,20 @@ def _goal(case: Case, value: Value) -> Change:
     if len(goals) < int(value):
         raise LeftOutError(f"only {len(goals)} other goals lie within reach and away from singular configurations")
     point = [round(float(each), 6) for each in goals[int(value) - 1]]
-    return _both(f"the goal {_text(point)} m", [f"trajectory.goal={_text(point)}"])
+    return _all(case, f"the goal {_text(point)} m", [f"trajectory.goal={_text(point)}"])
 
 
 def _direction(case: Case, value: Value) -> Change:
     _needs_ends(case)
     start, end = ([round(float(each), 9) for each in point] for point in ends_of(case.configs[0]))
     keys = [f"trajectory.start={_text(end)}", f"trajectory.goal={_text(start)}"]
-    return _both("the reversed direction", keys)
+    return _all(case, "the reversed direction", keys)
 
 
 def _velocity(case: Case, value: Value) -> Change:
     _skip_same(case, "noise.velocity", value)
     words = {"exact": "exact velocities", "finite_difference": "velocities by finite difference"}
-    return _both(words.get(str(value), f"velocities by {value}"), [f"noise.velocity={value}"])
+    return _all(case, words.get(str(value), f"velocities by {value}"), [f"noise.velocity={value}"])
 
 
 def _noise_kind(case: Case, value: Value) -> Change:
@@ -106,25 +103,27 @@ def _noise_kind(case: Case, value: Value) -> Change:
     if (old, value) not in factors:
         raise LeftOutError(f"noise.distribution is {old}")
     same = _scaled(case, "noise.position", factors[old, str(value)])
-    kind = [f"noise.distribution={value}"]
-    return Change(f"{value} noise of the same variance", [*kind, *same[0]], [*kind, *same[1]])
+    return Change(f"{value} noise of the same variance", [[f"noise.distribution={value}", *own] for own in same])
 
 
 def _duration(case: Case, value: Value) -> Change:
     new = _scaled(case, "trajectory.duration", float(value))
     durations = case.values("trajectory.duration")
-    ends = case.values("duration")
-    more: list[list[str]] = [[], []]
-    for place, (whole, motion) in enumerate(zip(ends, durations, strict=True)):
+    for own, whole, motion in zip(new, case.values("duration"), durations, strict=True):
         if whole is not None:
-            more[place] = [f"duration={_text(whole + (float(value) - 1.0) * motion)}"]
-    label = f"a motion of {number(float(value) * float(durations[0]))} s"
-    return Change(label, [*new[0], *more[0]], [*new[1], *more[1]])
+            own.append(f"duration={_text(whole + (float(value) - 1.0) * motion)}")
+    one = len(set(durations)) == 1
+    label = (
+        f"a motion of {number(float(value) * float(durations[0]))} s"
+        if one
+        else f"{number(float(value))} times the duration"
+    )
+    return Change(label, new)
 
 
 def _noise(case: Case, value: Value) -> Change:
     _needs_noise(case)
-    return Change(f"noise times {number(float(value))}", *_scaled(case, "noise.position", float(value)))
+    return Change(f"noise times {number(float(value))}", _scaled(case, "noise.position", float(value)))
 
 
 def _torque_limit(case: Case, value: Value) -> Change:
@@ -133,19 +132,16 @@ def _torque_limit(case: Case, value: Value) -> Change:
         own = case.values("robot.torque_limit")
         if None in own or own == limits:
             raise LeftOutError("the robot states no own torque limit" if None in own else "")
-        return Change(
-            f"the arm's own torque limit of {_amount(own[0], 'N m')}",
-            [f"torque_limits.max={_text(own[0])}"],
-            [f"torque_limits.max={_text(own[1])}"],
-        )
+        label = f"the arm's own torque limit of {_amount(own[0], 'N m')}"
+        return Change(label, [[f"torque_limits.max={_text(each)}"] for each in own])
     if None not in limits:
         label = f"{number(float(value))} of the torque limit"
-        return Change(label, *_scaled(case, "torque_limits.max", float(value)))
+        return Change(label, _scaled(case, "torque_limits.max", float(value)))
     if not case.peak > 0.0:
         raise LeftOutError("the largest torque is unknown")
     limit = float(f"{float(value) * case.peak:.4g}")
     label = f"a torque limit of {number(limit)} N m ({number(float(value), 2)} of the peak)"
-    return _both(label, [f"torque_limits.max={_text(limit)}"])
+    return _all(case, label, [f"torque_limits.max={_text(limit)}"])
 
 
 def _payload(case: Case, value: Value) -> Change:
@@ -155,7 +151,7 @@ def _payload(case: Case, value: Value) -> Change:
     changes: list[list[str]] = []
     for carried, known in zip(case.values("robot.payload.mass"), case.values("mismatch.payload"), strict=True):
         changes.append([f"robot.payload.mass={_text(carried + mass)}", f"mismatch.payload={_text(known - mass)}"])
-    return Change(f"an unknown payload of {number(mass)} kg", changes[0], changes[1])
+    return Change(f"an unknown payload of {number(mass)} kg", changes)
 
 
 def _friction(case: Case, value: Value) -> Change:
@@ -168,7 +164,7 @@ def _friction(case: Case, value: Value) -> Change:
         raise LeftOutError("the largest torque is unknown")
     level = float(f"{float(value) * case.peak:.3g}")
     label = f"dry friction of {number(level)} N m"
-    return _both(label, [f"plant.friction.coulomb={_text(level)}"])
+    return _all(case, label, [f"plant.friction.coulomb={_text(level)}"])
 
 
 def _delay(case: Case, value: Value) -> Change:
@@ -176,12 +172,13 @@ def _delay(case: Case, value: Value) -> Change:
         raise LeftOutError("the plant has no delay, or one for each stage")
     changes = [[f"plant.computation.delay={known + int(value)}"] for known in case.values("plant.computation.delay")]
     tick = case.configs[0].timing.tick
-    return Change(f"{number(1e3 * int(value) * tick)} ms more delay", changes[0], changes[1])
+    return Change(f"{number(1e3 * int(value) * tick)} ms more delay", changes)
 
 
 def _period(case: Case, value: Value) -> Change:
-    label = f"a control period of {_amount(_times(case.values('controller.period')[0], float(value)), 's')}"
-    return Change(label, *_scaled(case, "controller.period", float(value)))
+    new = _scaled(case, "controller.period", float(value))
+    period = _times(case.values("controller.period")[0], float(value))
+    return Change(f"a control period of {_amount(period, 's')}", new)
 
 
 def _model_error(case: Case, value: Value) -> Change:
@@ -190,19 +187,20 @@ def _model_error(case: Case, value: Value) -> Change:
         raise LeftOutError("the model error has no spread")
     if max(known) >= float(value):
         raise LeftOutError("the masses are drawn as widely already")
-    return _both(f"masses drawn within {number(100.0 * float(value))} %", [f"mismatch.spread={_text(float(value))}"])
+    return _all(
+        case, f"masses drawn within {number(100.0 * float(value))} %", [f"mismatch.spread={_text(float(value))}"]
+    )
 
 
 def _gain(case: Case, value: Value) -> Change:
-    return Change(f"{number(float(value))} times the main gain", *_scaled(case, "controller.natural_frequency", value))
+    return Change(f"{number(float(value))} times the main gain", _scaled(case, "controller.natural_frequency", value))
 
 
 def _gain_of(place: int) -> Callable[[Case, Value], Change]:
     def change(case: Case, value: Value) -> Change:
-        both = _scaled(case, "controller.natural_frequency", value)
-        name = case.question.sides[place].name
-        label = f"{number(float(value))} times the main gain of only {name}"
-        return Change(label, both[0] if place == 0 else [], both[1] if place == 1 else [])
+        scaled = _scaled(case, "controller.natural_frequency", value)
+        label = f"{number(float(value))} times the main gain of only {case.sides[place].name}"
+        return Change(label, [own if side == place else [] for side, own in enumerate(scaled)])
 
     return change
 
@@ -239,17 +237,16 @@ def family_of(variation: Variation) -> Family | None:
     return found[variation.place] if found else None
 
 
-def _both(label: str, overrides: Sequence[str]) -> Change:
-    return Change(label, overrides, overrides)
+def _all(case: Case, label: str, overrides: Sequence[str]) -> Change:
+    return Change(label, [list(overrides) for _ in case.configs])
 
 
-def _scaled(case: Case, key: str, factor: Value) -> tuple[list[str], list[str]]:
-    """Return the overrides that scale a number, a list or the values of stages in both configs."""
-    a, b = case.values(key)
-    if a is None or b is None:
+def _scaled(case: Case, key: str, factor: Value) -> list[list[str]]:
+    """Return the overrides that scale a number, a list or the values of stages in each config."""
+    values = case.values(key)
+    if None in values:
         raise LeftOutError(f"{key} is not set")
-    first, second = (list(_scaled_texts(key, value, float(factor))) for value in (a, b))
-    return first, second
+    return [list(_scaled_texts(key, value, float(factor))) for value in values]
 
 
 def _scaled_texts(key: str, value: Any, factor: float) -> Iterator[str]:
@@ -294,5 +291,6 @@ def _needs_ends(case: Case) -> None:
     resolved = [config.resolved["trajectory"] for config in case.configs]
     if any(not isinstance(each, Mapping) or "goal" not in each or "start" not in each for each in resolved):
         raise LeftOutError("the motion has no start and goal of the tip")
-    if resolved[0] != resolved[1] or case.configs[0].resolved["robot"] != case.configs[1].resolved["robot"]:
-        raise LeftOutError("the motions or arms of both sides differ")
+    first = case.configs[0].resolved
+    if any(own[group] != first[group] for own in (config.resolved for config in case.configs) for group in _MOTION):
+        raise LeftOutError("the motions or arms of the sides differ")

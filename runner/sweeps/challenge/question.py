@@ -77,18 +77,16 @@ class Variation:
         family: Name of its family; for a key of the user's, the key.
         value: Its value.
         label: What is changed, in words.
-        a: Overrides that A gets.
-        b: Overrides that B gets.
+        sides: Overrides that each side gets.
         place: Place of its family among those of that name.
-        exact: True if neither side draws anything.
+        exact: True if no side draws anything.
     """
 
     kind: Class
     family: str
     value: Value
     label: str
-    a: Sequence[str]
-    b: Sequence[str]
+    sides: Sequence[Sequence[str]]
     place: int = 0
     exact: bool = False
 

@@ -6,6 +6,7 @@ import sys
 import time
 from collections.abc import Iterator, Sequence
 from dataclasses import replace
+from itertools import chain
 from pathlib import Path
 from typing import TypeVar
 
@@ -73,10 +74,11 @@ def challenge(
         TemporaryError: if a run cannot be written, or a worker fails.
     """
     began = time.monotonic()
-    case, composer = check_case(question), Composer(question.config_dirs)
+    composer = Composer(question.config_dirs)
+    case = check_case(question, composer)
     variations, left = list_variations(case, values)
-    keys = changed_keys([text for one in variations for text in (*one.a, *one.b)])
-    cells = [(side, tuple(more)) for one in variations for side, more in enumerate((one.a, one.b))]
+    keys = changed_keys([text for one in variations for text in chain(*one.sides)])
+    cells = [(side, tuple(more)) for one in variations for side, more in enumerate(one.sides)]
     plan = Changed(case, cells, keys, (), composer)
     kept = []
     for place, one in enumerate(variations):
@@ -92,7 +94,7 @@ def challenge(
     made = Challenge(folder, question, kept, left, command, combined=combined, budget=budget.text)
     with at_work(folder, exclusive=True) as name:
         keys = changed_keys([*keys, "seed=", "repetitions="])
-        bench = Bench(case, keys, folder, outputs, engine, name)
+        bench = Bench(case, question, composer, keys, folder, outputs, engine, name)
         has_ended = _has_ended(made)
         if not has_ended:
             made.write(bench.jobs)
@@ -129,8 +131,8 @@ def _checked(plan: Changed, place: int, changed: _Checked) -> _Checked:
 def _combine(variations: Sequence[Variation], seed: int, case: Case, composer: Composer) -> Iterator[Combined]:
     """Yield the combinations that can be simulated, with the knowledge if anything is drawn."""
     combined = list(combine(variations, seed))
-    keys = changed_keys([text for one in variations for text in (*one.a, *one.b)])
-    cells = [(side, tuple(more)) for one in combined for side, more in enumerate((one.a, one.b))]
+    keys = changed_keys([text for one in variations for text in chain(*one.sides)])
+    cells = [(side, tuple(more)) for one in combined for side, more in enumerate(one.sides)]
     plan = Changed(case, cells, keys, (), composer)
     for place, one in enumerate(combined):
         with contextlib.suppress(ConfigError):
@@ -167,7 +169,7 @@ class _Runner:
         """Return the challenge with the asked case on fresh seeds, in looks until the stored answer comes back."""
         question = self._question
         exact = all(draws_nothing(config.resolved) for config in self._case.configs)
-        asked_case = Variation("numbers", "seeds", "fresh", "fresh seeds", (), (), exact=exact)
+        asked_case = Variation("numbers", "seeds", "fresh", "fresh seeds", ((), ()), exact=exact)
         back = False
         for pairs in pairs_of_looks(self._first):
             _tell(f"the asked case on fresh seeds, {pairs} pairs")

@@ -108,7 +108,7 @@ def list_variations(case: Case, values: Values) -> tuple[list[Variation], list[L
                     continue
                 except (TypeError, ValueError):
                     raise RunnerError(f"challenge.{name}: not a value of this family ({value!r}).") from None
-                found.append(Variation(family.kind, name, value, change.label, change.a, change.b, place))
+                found.append(Variation(family.kind, name, value, change.label, change.sides, place))
     if len(found) > _MOST:
         raise RunnerError(f"challenge: too many variations ({len(found)}). Allowed: at most {_MOST}.")
     order = list(CLASSES)
@@ -129,8 +129,8 @@ def _check_key(case: Case, key: str) -> None:
 
 
 def _setting(key: str) -> Callable[[Case, Value], Change]:
-    def change(_: Case, value: Value) -> Change:
-        return Change(f"{key}={value}", [f"{key}={value}"], [f"{key}={value}"])
+    def change(case: Case, value: Value) -> Change:
+        return Change(f"{key}={value}", [[f"{key}={value}"] for _ in case.sides])
 
     return change
 

@@ -103,7 +103,7 @@ def test_combinations_are_balanced_and_never_set_a_key_twice(sweep):
     assert set(counts) <= allowed
     assert max(counts.values()) - min(counts[label] for label in allowed) <= 2
     for one in combined:
-        keys = [split_override(text)[0] for text in one.a]
+        keys = [split_override(text)[0] for text in one.sides[0]]
         assert len(keys) == len(set(keys))
     assert list(combine([one for one in found if one.kind == "numbers"], 3)) == []
 

@@ -22,6 +22,7 @@ def test_without_any_amplitude_nothing_is_drawn():
     "changed",
     [
         {"noise": {"position": [0.0, 1e-4], "distribution": "gaussian"}},
+        {"noise": {"position": {"macro": 1e-3, "mini": 0.0}, "distribution": "uniform"}},
         {"noise": {"kind": "mine"}},
         {"mismatch": {"spread": 0.1}},
         {"mismatch": {"link": {"link1": {"inertia_spread": 0.1}}}},

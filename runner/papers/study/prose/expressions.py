@@ -7,7 +7,7 @@ another expression.
 import ast
 import re
 from collections import ChainMap
-from collections.abc import Mapping
+from collections.abc import Collection, Iterable, Mapping
 from dataclasses import replace
 from typing import Any
 
@@ -44,15 +44,20 @@ class Values:
         file: Name of the chapter's file.
         names: What expressions may call and read, by name.
         handed: Further classes whose values they hand on as they are.
+        read: Names of the results that expressions have read; the results add to it.
     """
 
-    def __init__(self, file: str, names: Mapping[str, Any], handed: tuple[type, ...] = ()) -> None:
+    def __init__(
+        self, file: str, names: Mapping[str, Any], handed: tuple[type, ...] = (), read: set[str] | None = None
+    ) -> None:
         functions = {name: value for name, value in names.items() if callable(value)}
         self.named: dict[str, Any] = {}
         """The values that the chapter itself gives a name, by that."""
         given = {name: value for name, value in names.items() if name not in functions}
         self._scope = Scope(functions, ChainMap(self.named, given), _MEMBERS, (*_HANDED, *handed))
         self._file, self._budget = file, Budget()
+        self._read = set() if read is None else read
+        self._read_by: dict[str, frozenset[str]] = {}
         self.found: list[tuple[Any, int]] = []
         self._lines = [1]
 
@@ -65,7 +70,8 @@ class Values:
         for number, content in enumerate(text.splitlines(), start=1):
             if PRIVATE.search(content):
                 raise ProseError(self._file, number, "has a character for private use; leave it out")
-        text = self._without_names(text)
+        self.name_values(text)
+        text = _SET.sub(lambda found: "\n" * found[0].count("\n"), text)
         parts: list[str] = []
         end, line = 0, 1
         try:
@@ -83,14 +89,27 @@ class Values:
             raise ProseError(self._file, line, f"{found[0]} is not used here: a chapter has one branch and no loops")
         return rest
 
-    def _without_names(self, text: str) -> str:
-        """Give names to the values of `{% set name = EXPRESSION %}`; return the text with these left empty."""
+    def name_values(self, text: str, needed: Collection[str] | None = None) -> None:
+        """Give names to the values of `{% set name = EXPRESSION %}` of a chapter.
+
+        Args:
+            text: The chapter.
+            needed: The names to give; None for all.
+
+        Raises:
+            ProseError: if an expression cannot be evaluated, or a name is given twice.
+        """
         for found in _SET.finditer(text):
             line = text.count("\n", 0, found.start()) + 1
             if found[1] in self.named:
                 raise ProseError(self._file, line, f"set {found[1]}: the name is taken above; choose another")
-            self.named[found[1]] = self.value(found[2], line)
-        return _SET.sub(lambda found: "\n" * found[0].count("\n"), text)
+            if needed is None or found[1] in needed:
+                self.named[found[1]] = self.value(found[2], line)
+                self._read_by[found[1]] = self.read_by(found[2])
+
+    def read_by(self, expression: str) -> frozenset[str]:
+        """Return the names of the results that an evaluated expression has read, also by the names in it."""
+        return self._read_by.get(" ".join(expression.split()), frozenset())
 
     def line_of(self, number: int) -> int:
         """Return the line of the file that became a line of the text without expressions; both count from 1."""
@@ -128,12 +147,33 @@ class Values:
             if any(isinstance(node, _BRANCHES) for node in ast.walk(parse(source))):
                 told = "chooses between words; a chapter has one branch: state a condition in a finding"
                 raise ProseError(self._file, line, f"{source}: {told}")
-            return scope.evaluate(source, Budget() if instead else self._budget)
+            others = self._read.copy()
+            self._read.clear()
+            value = scope.evaluate(source, Budget() if instead else self._budget)
+            self._read_by[source] = frozenset(self._read).union(*map(self.read_by, names_in(source)))
+            self._read |= others
+            return value
         except (ProseError, MissingError):  # what a run that was not made is needed for is left out of the report
             raise
         except RunnerError as error:
             told = error.reason if isinstance(error, ExpressionError) else str(error)
             raise ProseError(self._file, line, f"{source}: {told}") from error
+
+
+def names_in(expression: str) -> set[str]:
+    """Return the names in an expression."""
+    return {node.id for node in ast.walk(parse(" ".join(expression.split()))) if isinstance(node, ast.Name)}
+
+
+def needed_names(text: str, expressions: Iterable[str]) -> set[str]:
+    """Return the names that a chapter gives and that expressions need, directly or by another one."""
+    given = {found[1]: found[2] for found in _SET.finditer(text)}
+    needed, left = set[str](), list(expressions)
+    while left:
+        new = names_in(left.pop()) & given.keys() - needed
+        needed |= new
+        left += [given[name] for name in new]
+    return needed
 
 
 class ProseError(RunnerError):

@@ -1,11 +1,11 @@
 """Reader of a chapter file: expressions, then containers, then Markdown."""
 
 import re
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
 from typing import Any
 
-from runner.base.errors import nearest
+from runner.base.errors import nearest, unknown
 from runner.papers.study.measured import ANSWERS, Condition, Finding, finding
 from runner.papers.study.prose.expressions import ProseError, Values
 from runner.papers.study.prose.paragraphs import Heading, Paragraphs, Piece
@@ -13,7 +13,9 @@ from runner.reporting.document import Block, NoticeKind, Section, Text
 
 _CONTAINERS = ("finding", *ANSWERS)
 _FENCE = ":::"
-_HOLDS = re.compile(r"\s*holds:(.*)")
+_HOLDS, _ABOUT = re.compile(r"\s*holds:(.*)"), re.compile(r"about:(.*)")
+ABOUT = ("engine", "step", "seeds")
+"""Choices that a finding may compare itself."""
 
 
 @dataclass(frozen=True)
@@ -30,18 +32,40 @@ class Stated:
 
 
 @dataclass(frozen=True)
+class Box:
+    """A finding as written in a chapter.
+
+    Attributes:
+        finding: The finding.
+        stated: Its conditions.
+        about: Choices that it compares itself, such as "engine".
+        read: Names of the results that its conditions have read.
+    """
+
+    finding: Finding
+    stated: Sequence[Stated]
+    about: Sequence[str]
+    read: frozenset[str]
+
+
+@dataclass(frozen=True)
 class Reading:
     """Content of a chapter's file.
 
     Attributes:
         section: Its section.
         values: The values of its expressions.
-        stated: The conditions of its findings as written.
+        boxes: Its findings as written.
     """
 
     section: Section
     values: Values
-    stated: list[Stated]
+    boxes: list[Box]
+
+    @property
+    def stated(self) -> list[Stated]:
+        """The conditions of all findings."""
+        return [each for box in self.boxes for each in box.stated]
 
 
 @dataclass
@@ -54,9 +78,12 @@ class _Container:
     title: str
     lines: list[str] = field(default_factory=list)
     conditions: list[Stated] = field(default_factory=list)
+    about: list[str] = field(default_factory=list)
 
 
-def read_chapter(file: str, text: str, names: Mapping[str, Any], handed: tuple[type, ...] = ()) -> Reading:
+def read_chapter(
+    file: str, text: str, names: Mapping[str, Any], handed: tuple[type, ...] = (), read: set[str] | None = None
+) -> Reading:
     """Return the content of a chapter's file.
 
     Its first line is its title, `# Title`; `## Title` begins a section of it. `{{ CALL }}` in a separate paragraph is
@@ -69,45 +96,52 @@ def read_chapter(file: str, text: str, names: Mapping[str, Any], handed: tuple[t
         :::
 
     The boxes `stands`, `falls`, `turns` and `why` answer the question that is the title of the chapter. Their text
-    may be empty.
+    may be empty. A finding that compares engines or steps says so by a line `about: engine, step`: a challenge leaves
+    these choices as they are.
 
     Args:
         file: Name of the file, for messages.
         text: Its content.
         names: What expressions may call and read, by name.
         handed: Further classes whose values they hand on as they are.
+        read: Names of the results that expressions have read; the results add to it.
 
     Raises:
         ProseError: if it cannot be read; names the line, and what to write.
     """
-    values = Values(file, names, handed)
-    stated: list[Stated] = []
-    pieces = list(_pieces(file, values.put_away(text), values, stated))
+    values = Values(file, names, handed, read)
+    boxes: list[Box] = []
+    pieces = list(_pieces(file, values.put_away(text), values, boxes))
     if not pieces or not isinstance(pieces[0], Heading) or pieces[0].level != 1:
         raise ProseError(file, 1, "begins without a title; write `# Title` in the first line")
-    return Reading(_section(file, pieces), values, stated)
+    return Reading(_section(file, pieces), values, boxes)
 
 
-def _pieces(file: str, text: str, values: Values, stated: list[Stated]) -> Iterator[Piece]:
+def _pieces(file: str, text: str, values: Values, boxes: list[Box]) -> Iterator[Piece]:
     """Yield headings, blocks and findings in reading order."""
     paragraphs = Paragraphs(file, values)
     plain: list[str] = []
     first, box = 1, None
     for count, line in enumerate(text.splitlines(), start=1):
         number = values.line_of(count)
-        condition = _HOLDS.match(line)
+        condition, about = _HOLDS.match(line), _ABOUT.match(line)
         if line.startswith(_FENCE):
             if box is None:
                 yield from paragraphs.blocks("\n".join(plain), first)
                 box = _opened(file, line, number, count)
             elif line.strip() == _FENCE:
-                yield _finding(file, box, values, paragraphs)
-                stated += box.conditions
+                found = _finding(file, box, values, paragraphs)
+                read = frozenset[str]().union(*(values.read_by(each.expression) for each in box.conditions))
+                boxes.append(Box(found, box.conditions, box.about, read))
+                yield found
                 plain, first, box = [], count + 1, None
             else:
                 raise ProseError(file, number, f"a box in a box; close that of line {box.line} by `:::` first")
         elif condition and box is None:
             raise ProseError(file, number, "a condition outside a box; write `holds:` between `::: finding` and `:::`")
+        elif about and box is not None:
+            box.about += _about(file, about[1], number)
+            box.lines.append("")
         elif condition and box is not None:
             box.conditions.append(Stated(condition[1].strip(), number))
             box.lines.append("")
@@ -127,6 +161,14 @@ def _opened(file: str, line: str, number: int, count: int) -> _Container:
     if not title:
         raise ProseError(file, number, f"a box without a title; write `::: {kind} TITLE`")
     return _Container(known, number, count, title.strip())
+
+
+def _about(file: str, text: str, number: int) -> list[str]:
+    names = [name.strip() for name in text.split(",")]
+    for name in names:
+        if name not in ABOUT:
+            raise ProseError(file, number, unknown("choice", name, ABOUT, "about"))
+    return names
 
 
 def _finding(file: str, box: _Container, values: Values, paragraphs: Paragraphs) -> Finding:
