@@ -10,12 +10,12 @@ from functools import cached_property
 from typing import Literal
 
 from runner import store
+from runner.assembly.run_config import RunConfig
 from runner.base import progress
 from runner.base.dotted_keys import get
 from runner.base.errors import ConfigError, RunnerError
 from runner.base.quantities import ROUNDING
 from runner.config.compose.composer import Composer
-from runner.config.run import RunConfig
 from runner.papers.study.asked import Asked, list_asked
 from runner.papers.study.chapters import Chapters
 from runner.papers.study.items import Way, listed, make_listed

@@ -7,6 +7,7 @@ from itertools import chain
 from typing import Any
 
 from runner.base.quantities import number
+from runner.plants import PLANTS
 from runner.store.axes import override_value
 from runner.sweeps.challenge.case import Case
 from runner.sweeps.challenge.goals import ends_of
