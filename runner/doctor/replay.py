@@ -63,7 +63,10 @@ def replay(
     model = validate(compose((f"robot={robot}",), config_dirs)).arm.model
     found = examine_log(log, model, given=columns)
     if found.motion is None:
-        asked = "; ".join(f"{one.place}: {one.text}" for one in found.questions) or "no position of each joint is known"
+        asked = (
+            "; ".join(f"{one.place}: {one.text.rstrip('.')}" for one in found.questions)
+            or "no position of each joint is known"
+        )
         raise RunnerError(
             f"{log}: {asked}. `runner doctor {log} --robot {robot} -o FOLDER` writes a map to complete for --columns"
         )
