@@ -67,7 +67,7 @@ def identify(
         friction: Kind of friction: coulomb, sigmoid, load or stribeck; None for the one that predicts unseen torques
             best.
         cutoff: Cut-off on both sides of the equations, in Hz; None for the one that predicts unseen torques best.
-        prior: Width of the robot file's values, as a share of them, to combine with the logs; None for the logs alone.
+        prior: Width of the robot file's values, as a share of them, to combine with the logs; None for none.
         fill_gaps: Longest gap of a log that is filled, in s; 0 for none.
         outputs: Outputs folder; None for the usual one.
         config_dir: Further config folders.

@@ -3,7 +3,7 @@ r"""Combination of identified values with the values of the robot's file, each w
 .. math:: \hat\pi = (G^T V^{-1} G + P^{-1})^{-1} (G^T V^{-1} \hat\theta + P^{-1} \pi_0)
 
 The logs give the sums theta = G pi with a covariance V, and the file gives pi_0 with P. The share of the prior in a
-value is the diagonal element of the second term's factor: 1 if the logs do not tell the value, 0 if they alone do.
+value is the diagonal element of the second term's factor: 1 if the logs do not tell the value, 0 if only they do.
 """
 
 from dataclasses import dataclass
