@@ -33,7 +33,7 @@ class Identification(result.Identification):
         """
         import pandas as pd
 
-        names = ("name", "unit", "value", "half", "white", "file", "second", "differs", "spread")
+        names = ("name", "unit", "value", "half", "white", "file", "second", "differs", "spread", "prior_share")
         rows = [[getattr(one, name) for name in names] for one in self.parameters]
         return pd.DataFrame(rows, columns=list(names)).set_index("name")
 
@@ -53,6 +53,7 @@ def identify(
     robot: str,
     friction: str | None = None,
     cutoff: float | None = None,
+    prior: float | None = None,
     fill_gaps: float = 0.0,
     outputs: str | Path | None = None,
     config_dir: Sequence[str | Path] = (),
@@ -66,6 +67,7 @@ def identify(
         friction: Kind of friction: coulomb, sigmoid, load or stribeck; None for the one that predicts unseen torques
             best.
         cutoff: Cut-off on both sides of the equations, in Hz; None for the one that predicts unseen torques best.
+        prior: Width of the robot file's values, as a share of them, to combine with the logs; None for none.
         fill_gaps: Longest gap of a log that is filled, in s; 0 for none.
         outputs: Outputs folder; None for the usual one.
         config_dir: Further config folders.
@@ -84,6 +86,8 @@ def identify(
     kind = next((each for each in KINDS if each == friction), None)
     if friction is not None and kind is None:
         raise RunnerError(f"friction: {unknown('kind', friction, KINDS)}")
+    if prior is not None and not 0.0 < prior <= 1.0:
+        raise RunnerError(f"prior: not a share ({prior:g}). Allowed: above 0 up to 1.")
     if not logs:
         raise RunnerError("logs: none is given. Allowed: one or more.")
     arm = validate(compose((f"robot={robot}",), [Path(each) for each in config_dir])).arm
@@ -95,9 +99,10 @@ def identify(
         robot,
         *(["--friction", kind] if kind else []),
         *(["--cutoff", f"{cutoff:g}"] if cutoff else []),
+        *(["--prior", f"{100.0 * prior:g}%"] if prior else []),
     ]
     place = outputs_dir() if outputs is None else Path(outputs)
-    found = fit(examine_logs(question), place, shlex.join(words), kind, cutoff)
+    found = fit(examine_logs(question), place, shlex.join(words), kind, cutoff, prior)
     found.write()
     note(found.folder)
     return public_class(Identification, found)

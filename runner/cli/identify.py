@@ -6,14 +6,17 @@ fit has not seen. The last line is the folder of the result, with a report.
 Example: runner identify log1.csv log2.csv --columns columns.yaml --robot ur5e
 """
 
+import re
 import shlex
 import sys
-from argparse import Namespace
+from argparse import ArgumentTypeError, Namespace
 from pathlib import Path
 
 from runner.base.sanitize import one_line
 from runner.cli.arguments import Parser, seconds
 from runner.identification.friction_kinds import KINDS
+
+_PER_CENT = re.compile(r"(\d{1,3}(?:\.\d{1,6})?)\s*%")
 
 
 def add_arguments(parser: Parser) -> None:
@@ -30,9 +33,21 @@ def add_arguments(parser: Parser) -> None:
     )
     parser.add_argument("--cutoff", type=float, metavar="HZ", help="cut-off of both sides, in Hz (default: chosen)")
     parser.add_argument(
+        "--prior", type=_width, metavar="WIDTH", help="combine with the file's values, this wide, such as 30%%"
+    )
+    parser.add_argument(
         "--fill-gaps", type=seconds, default=0.0, metavar="TIME", help="longest gap to fill, such as 20ms"
     )
     parser.add_shared("config_dir", output="outputs folder (default: outputs)")
+
+
+def _width(text: str) -> float:
+    """Return the share of a text such as "30%"."""
+    number = _PER_CENT.fullmatch(text)
+    share = float(number[1]) / 100.0 if number else 0.0
+    if not 0.0 < share <= 1.0:
+        raise ArgumentTypeError(f"not a width ('{text}'). Allowed: above 0% up to 100%, such as 30%.")
+    return share
 
 
 def run(options: Namespace) -> int:
@@ -57,7 +72,8 @@ def run(options: Namespace) -> int:
         return 0
     sys.stdout.flush()
     command = shlex.join(["runner", "identify", *options.words])
-    found = identify(examined, options.output or outputs_dir(), command, options.friction, options.cutoff)
+    place = options.output or outputs_dir()
+    found = identify(examined, place, command, options.friction, options.cutoff, options.prior)
     print()
     for line in answer_lines(found):
         print(one_line(line))

@@ -11,6 +11,7 @@ from runner.base.errors import RunnerError
 from runner.config.compose.compose import compose
 from runner.doctor.log import LONGEST_GAP, examine_log
 from runner.doctor.log_files import MAP, MOTION, map_text
+from runner.recordings.long_motion import with_long_motion
 from runner.store import Run
 from runner.sweeps import job
 
@@ -62,7 +63,10 @@ def replay(
     model = validate(compose((f"robot={robot}",), config_dirs)).arm.model
     found = examine_log(log, model, given=columns)
     if found.motion is None:
-        asked = "; ".join(f"{one.place}: {one.text}" for one in found.questions) or "no position of each joint is known"
+        asked = (
+            "; ".join(f"{one.place}: {one.text.rstrip('.')}" for one in found.questions)
+            or "no position of each joint is known"
+        )
         raise RunnerError(
             f"{log}: {asked}. `runner doctor {log} --robot {robot} -o FOLDER` writes a map to complete for --columns"
         )
@@ -74,15 +78,15 @@ def replay(
     folder = outputs / FOLDER / digest
     for name, text in texts.items():
         write_atomically(folder / name, text.encode())
-    run = job.run(
+    overrides = (
         f"robot={robot}",
         f"controller={controller}",
         "trajectory=from_file",
         f"trajectory.file={folder / MOTION}",
         "plant=rk4",
         f"outputs={outputs}",
-        config_dirs=config_dirs,
     )
+    run, _ = job.perform(job.RunJob(with_long_motion(validate(compose(overrides, config_dirs)))))
     filled = found.recording is not None and bool(found.recording.filled)
     return Replay(
         run, columns or folder / MAP, found.motion.commanded, found.motion.notes, LONGEST_GAP if filled else 0.0

@@ -2,8 +2,10 @@ r"""Weighted, robust least squares of the torques of logs, with intervals.
 
 .. math:: \tau(t + d) = Y(q, \dot q, \ddot q)\, \pi + I_a \ddot q + \tau_f(\dot q, \tau_l)
 
-Each joint has a weight from its residuals. Rows far outside, such as contacts, count less (Huber, Annals of
-Mathematical Statistics 35(1), 1964). The delay d of the torques is found by Gauss-Newton steps.
+Each joint has a weight from its residuals in a fit in which all joints count alike (Gautier, IEEE ICRA 1997). These
+weights are not renewed: where the equations of the joints contradict each other, a joint that explains itself would
+count ever more. Rows far outside, such as contacts, count less (Huber, Annals of Mathematical Statistics 35(1), 1964).
+The delay d of the torques is found by Gauss-Newton steps.
 
 Residuals are correlated in time, so rows are combined to blocks whose length follows from the residuals. With several
 logs, the spread of their separate fits beyond these intervals is added (DerSimonian and Laird, Controlled Clinical
@@ -28,7 +30,8 @@ from runner.recordings.block_intervals import block_scores
 _TOLD_APART = 1e-3  # share of a column that the others must leave, or the logs do not tell it
 _OUTSIDE = 3.0  # times the usual residual of a joint, from which on a row counts less
 _EXACT = 1e-12  # of the rms of a joint's torque: a smaller residual is rounding
-_STEPS = 10
+_ALIKE = 4  # steps in which all joints count alike
+_STEPS = 12
 _STEADY = 1e-7  # s, of the delay
 _SETTLED = 1e-6  # of the largest base parameter
 _LONGEST_DELAY = 0.05  # s
@@ -90,50 +93,57 @@ def fit_logs(logs: Sequence[LogRows], kind: FrictionKind, start: FloatArray | No
         kind: Kind of friction.
         start: Base parameters from which the steps begin, shape (number of sums,); None for zero.
     """
-    state, taken, factors = solve_logs(logs, kind, start)
+    state, taken, factors, sizes = solve_logs(logs, kind, start)
     system = linear_system(logs, state, True)
     rest = _rest(system, state)
-    weights, outside = row_weights(system, rest)
+    weights, outside = row_weights(system, rest, sizes)
     return _with_intervals(state, taken, factors, system, rest, weights, outside)
 
 
 def solve_logs(
     logs: Sequence[LogRows], kind: FrictionKind, start: FloatArray | None = None
-) -> tuple[State, list[int], FloatArray]:
-    """Return the values of a fit, the columns that the logs tell apart, and the sums that these stand for."""
+) -> tuple[State, list[int], FloatArray, FloatArray]:
+    """Return the values of a fit, the columns that the logs tell apart, their sums, and the residuals' joint sizes."""
     nb, nq = logs[0].Y.shape[2], logs[0].motion.model.nq
     layout = Layout(kind, nb, nq)
     values = np.zeros(layout.delay + 1)
     values[:nb] = 0.0 if start is None else start
     state = State(layout, values, 0.0, np.full(nq, SHAPES[len(SHAPES) // 2]))
     taken: list[int] = []
-    factors = np.zeros((0, 0))
+    factors, sizes = np.zeros((0, 0)), np.ones(nq)
     weights: FloatArray | None = None
     for step in range(_STEPS):
         system = linear_system(logs, state, step > 1)
         if weights is None:
             weights = np.where(system.moving, 1.0, 0.0)
-            for joint in np.unique(system.joint):
-                own = system.joint == joint
-                weights[own] /= max(float(np.std(system.y[own])), 1e-9)
         if step < 3:  # the sums that are told apart do not change with small changes of load and delay
-            taken, factors = _told_apart(system, weights)
+            taken, factors = _told_apart(system)
         values = _solved(system, weights, taken)
         change = float(values[layout.delay]) if step > 1 else np.inf
         delay = float(np.clip(state.delay + (change if step > 1 else 0.0), -_LONGEST_DELAY, _LONGEST_DELAY))
         still = np.abs(values[:nb] - state.values[:nb]).max(initial=0.0)
         values[layout.delay] = 0.0
         state = replace(state, values=values, delay=delay)
-        weights = row_weights(system, _rest(system, state))[0]
+        rest = _rest(system, state)
+        if step < _ALIKE:
+            sizes = residual_sizes(system, rest)
+        weights = row_weights(system, rest, sizes)[0]
+        if step < _ALIKE - 1:
+            weights *= sizes[system.joint]
         if kind in SHAPED and step < 3:
             state = replace(state, shapes=_best_shapes(logs, state, system, weights))
-        if step > 2 and abs(change) < _STEADY and still < _SETTLED * (1.0 + np.abs(values[:nb]).max(initial=0.0)):
+        settled = abs(change) < _STEADY and still < _SETTLED * (1.0 + np.abs(values[:nb]).max(initial=0.0))
+        if step > _ALIKE and settled:
             break
-    return state, taken, factors
+    return state, taken, factors, sizes
 
 
-def _told_apart(system: System, weights: FloatArray) -> tuple[list[int], FloatArray]:
-    used = weights > 0.0
+def _told_apart(system: System) -> tuple[list[int], FloatArray]:
+    """Return the columns that the rows of the fit tell apart, and their sums; each joint counts by its torque."""
+    weights, used = np.ones(len(system.y)), system.moving
+    for joint in np.unique(system.joint):
+        own = system.joint == joint
+        weights[own] /= max(float(np.std(system.y[own])), 1e-9)
     X = system.X[used] * weights[used, None]
     sizes = np.maximum(np.linalg.norm(X, axis=0), 1e-300)
     scaled = X / sizes
@@ -161,20 +171,29 @@ def _rest(system: System, state: State) -> FloatArray:
     return rest
 
 
-def row_weights(system: System, rest: FloatArray) -> tuple[FloatArray, NDArray[np.bool_]]:
-    """Return the weight of each row, 0 for rows that are not of the fit, and which rows are far outside."""
-    weights = np.zeros(len(rest))
-    outside = np.zeros(len(rest), dtype=bool)
+def residual_sizes(system: System, rest: FloatArray) -> FloatArray:
+    """Return the usual size of each joint's residuals in the rows of the fit, shape (nq,), in N m; 1 without rows."""
+    sizes = np.ones(system.layout.nq)
     for joint in np.unique(system.joint):
         own = (system.joint == joint) & system.moving
-        if not own.any():
-            continue
-        size = np.abs(rest[own])
-        scale = max(1.4826 * float(np.median(size)), _EXACT * float(np.sqrt(np.mean(system.y[own] ** 2))), 1e-12)
-        far = size > _OUTSIDE * scale
-        weights[own] = np.sqrt(np.where(far, _OUTSIDE * scale / np.maximum(size, 1e-300), 1.0)) / scale
-        outside[own] = far
-    return weights, outside
+        if own.any():
+            usual = 1.4826 * float(np.median(np.abs(rest[own])))
+            sizes[joint] = max(usual, _EXACT * float(np.sqrt(np.mean(system.y[own] ** 2))), 1e-12)
+    return sizes
+
+
+def row_weights(system: System, rest: FloatArray, sizes: FloatArray) -> tuple[FloatArray, NDArray[np.bool_]]:
+    """Return the weight of each row, 0 for rows that are not of the fit, and which rows are far outside.
+
+    Args:
+        system: The equations.
+        rest: Residuals of all rows, shape (R,), in N m.
+        sizes: Usual size of each joint's residuals, shape (nq,), in N m.
+    """
+    usual = sizes[system.joint]
+    far = _OUTSIDE * usual / np.maximum(np.abs(rest), 1e-300)
+    weights = np.where(system.moving, np.sqrt(np.minimum(far, 1.0)) / usual, 0.0)
+    return weights, system.moving & (far < 1.0)
 
 
 def _best_shapes(logs: Sequence[LogRows], state: State, system: System, weights: FloatArray) -> FloatArray:
@@ -239,7 +258,10 @@ def _covariance(
     system: System, rest: FloatArray, weights: FloatArray, taken: Sequence[int], block: float,
     rows: NDArray[np.bool_],
 ) -> tuple[FloatArray, FloatArray, FloatArray] | None:  # fmt: skip
-    """Return the effects of blocks, degrees of freedom and deviation of white residuals of the taken columns."""
+    """Return the effects of blocks, degrees of freedom and deviation of white residuals of the taken columns.
+
+    The effects are at least as large as those of white residuals.
+    """
     used = (weights > 0.0) & rows
     if used.sum() <= len(taken) + 1:
         return None
@@ -260,7 +282,10 @@ def _covariance(
     np.add.at(shares, numbers, (own @ bread) ** 2)
     freedom = np.maximum(np.sum(shares, axis=0) ** 2 / np.sum(shares**2, axis=0) - 1.0, 1.0)
     plain = np.sqrt(float(left @ left) / (used.sum() - len(taken)) * np.diagonal(bread)) / sizes
-    return scores @ bread / sizes, freedom, plain
+    effects = scores @ bread / sizes
+    size = np.linalg.norm(effects, axis=0)  # small if residuals of alternating sign cancel within blocks
+    floor = np.divide(plain, size, out=np.ones_like(size), where=size > 0.0)
+    return effects * np.maximum(floor, 1.0), freedom, plain
 
 
 def block_numbers(system: System, block: float) -> NDArray[np.intp]:

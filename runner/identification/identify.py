@@ -1,6 +1,6 @@
 """Identification of an arm by examined logs: choice of friction and cut-off, fit and its checks."""
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from datetime import UTC, datetime
 from pathlib import Path
 
@@ -24,6 +24,8 @@ from runner.identification.friction_kinds import KINDS, SHAPED, TERMS, FrictionK
 from runner.identification.held_out import HeldOut, file_share, joint_weights, predict_held_out
 from runner.identification.log_rows import LogRows
 from runner.identification.parameters import Sum
+from runner.identification.physical import describe_bodies, nearest_bodies
+from runner.identification.prior import combine_with_prior, prior_widths
 from runner.identification.result import (
     Alternative,
     Identification,
@@ -48,6 +50,7 @@ def identify(
     command: str,
     kind: FrictionKind | None = None,
     frequency: float | None = None,
+    prior: float | None = None,
 ) -> Identification:
     """Return the identification of an arm; it is not stored yet.
 
@@ -57,6 +60,7 @@ def identify(
         command: Command that makes it.
         kind: Kind of friction; None for the one that predicts unseen torques best.
         frequency: Cut-off on both sides of the equations, in Hz; None for the one that predicts unseen torques best.
+        prior: Width of the file's values, as a share of them, that are combined with the logs; None for none.
 
     Raises:
         RunnerError: if the cut-off does not fit the rate of the rows.
@@ -97,9 +101,16 @@ def identify(
     ]  # fmt: skip
     layout = fit.state.layout
     digests = [digest_of(recording.path) for recording in question.recordings]
-    said = (digests, [one.model_dump() for one in question.said], question.urdf, kind, frequency)
+    said = (digests, [one.model_dump() for one in question.said], question.urdf, kind, frequency, prior)
     base = _file_values(question, sums)
-    wide = set(find_weak(fit))
+    untold = list(find_untold(question, sums, fit))
+    if prior is None:
+        wide = set(find_weak(fit))
+        determined = [column for column in fit.taken if column != layout.delay and column not in wide]
+        values = [_parameter(question, sums, fit, column, second, base) for column in determined]
+    else:
+        values = list(_with_prior(question, sums, fit, second, base, prior))
+        untold = [one for one in untold if one.name not in {each.name for each in values}]
     return Identification(
         folder=place_of(outputs, said),
         command=command,
@@ -110,12 +121,8 @@ def identify(
         kind=layout.kind,
         forced=kind is not None,
         frequency=at,
-        parameters=[
-            _parameter(question, sums, fit, column, second, base)
-            for column in fit.taken
-            if column != layout.delay and column not in wide
-        ],
-        untold=list(find_untold(question, sums, fit)),
+        parameters=values,
+        untold=untold,
         joints=[_accuracy(question, rows, fit, held, base, joint) for joint in np.unique(held.system.joint).tolist()],
         held_out=held.share(),
         file=file_share(held.system, base),
@@ -134,6 +141,8 @@ def identify(
         rank=len(fit.taken) - (layout.delay in fit.taken),
         condition=fit.condition,
         shapes=(fit.state.shapes * rows[0].motion.fastest).tolist() if layout.kind in SHAPED else [],
+        bodies=_bodies(question, sums, fit, second),
+        prior=prior,
         date=datetime.now(UTC).date().isoformat(),
     )  # fmt: skip
 
@@ -156,11 +165,61 @@ def _follows(fit: Fit, rows: Sequence[LogRows], model: RobotModel) -> list[str]:
     ]
 
 
-def _file_values(question: Question, sums: Sequence[Sum]) -> FloatArray:
+def _file(question: Question, sums: Sequence[Sum]) -> FloatArray:
+    """Return the parameters of the robot's file that are in the sums."""
     model = question.model
     armature = model.armature if question.rotors else np.zeros(model.nq)
-    full = np.concatenate([model.inertial_parameters, armature])
+    return np.concatenate([model.inertial_parameters, armature])[: len(sums[0].factors)]
+
+
+def _file_values(question: Question, sums: Sequence[Sum]) -> FloatArray:
+    full = _file(question, sums)
     return np.array([float(each.factors @ full) for each in sums])
+
+
+def _bodies(question: Question, sums: Sequence[Sum], fit: Fit, second: SecondMethod) -> str:
+    """Return a sentence on the bodies that have the values that the logs determine."""
+    base = fit.state.layout.base
+    told = [(place, column) for place, column in enumerate(fit.taken) if column < base and second.halves[column] > 0.0]
+    if not told:
+        return ""
+    places, columns = map(list, zip(*told, strict=True))
+    factors = fit.factors[places, :base] @ np.array([each.factors for each in sums])
+    misses = nearest_bodies(
+        factors, fit.state.values[columns], second.halves[columns], _file(question, sums), question.model.nq
+    )
+    return describe_bodies([sums[column].name for column in columns], misses)
+
+
+def _with_prior(
+    question: Question, sums: Sequence[Sum], fit: Fit, second: SecondMethod, base: FloatArray, width: float
+) -> Iterator[Parameter]:
+    """Yield the parameters by the logs and by the robot's file; the logs' own value stands where they tell it."""
+    layout, joints = fit.state.layout, question.model.joint_names
+    names, factors = [each.name for each in sums], np.array([each.factors for each in sums])
+    widths = prior_widths(_file(question, sums), question.model.nq, width)
+    found = combine_with_prior(fit, second.halves, base, (factors * widths**2) @ factors.T)
+    for column in range(layout.delay):
+        if not np.isfinite(found.halves[column]):
+            continue
+        told = column in fit.taken and bool(np.isfinite(second.halves[column]))
+        value, share = float(found.values[column]), float(found.shares[column])
+        inertial = column < layout.base
+        yield Parameter(
+            name_of(layout, column, names, joints), _unit(question, sums, fit, column), value,
+            float(found.halves[column]), float(fit.white[column]) if told else float(found.halves[column]),
+            float(base[column]) if inertial else None, float(second.values[column]) if told else value,
+            told and bool(second.differs[column]), told and bool(fit.spread[column]), (),
+            share if inertial else None,
+        )  # fmt: skip
+
+
+def _unit(question: Question, sums: Sequence[Sum], fit: Fit, column: int) -> str:
+    layout = fit.state.layout
+    if column < layout.base:
+        return sums[column].unit
+    joint, term = divmod(column - layout.base, len(TERMS[layout.kind]))
+    return term_unit(TERMS[layout.kind][term], bool(question.model.prismatic[joint]))
 
 
 def _parameter(
@@ -169,12 +228,11 @@ def _parameter(
     layout, joints = fit.state.layout, question.model.joint_names
     names = [each.name for each in sums]
     inertial = column < layout.base
-    joint, term = divmod(column - layout.base, len(TERMS[layout.kind]))
-    unit = sums[column].unit if inertial else term_unit(TERMS[layout.kind][term], bool(question.model.prismatic[joint]))
     place = fit.taken.index(column)
     others = [other for other in range(layout.delay) if other not in fit.taken and place in columns_in_sum(fit, other)]
     return Parameter(
-        name_of(layout, column, names, joints), unit, float(fit.state.values[column]), float(second.halves[column]),
+        name_of(layout, column, names, joints), _unit(question, sums, fit, column), float(fit.state.values[column]),
+        float(second.halves[column]),
         float(fit.white[column]), float(base[column]) if inertial else None, float(second.values[column]),
         bool(second.differs[column]), bool(fit.spread[column]),
         [name_of(layout, each, names, joints) for each in others],

@@ -33,6 +33,7 @@ class Parameter:
         differs: True if both methods differ as chance makes them in less than 1 % of cases; `half` contains it.
         spread: True if the logs differ as chance makes them in less than 0.1 % of cases; `half` contains it.
         stands_for: Names of parameters that the logs cannot tell from this one.
+        prior_share: Share of the robot's file in the value, 0 to 1; None for friction and without a prior.
     """
 
     name: str
@@ -45,6 +46,7 @@ class Parameter:
     differs: bool
     spread: bool
     stands_for: Sequence[str] = ()
+    prior_share: float | None = None
 
 
 @dataclass(frozen=True)
@@ -168,6 +170,8 @@ class Identification:
         rank: Number of determined parameters, without the delay.
         condition: Condition number of the equations.
         shapes: v_s of the friction of each joint, in rad/s; empty if the kind has none.
+        bodies: Sentence on bodies with positive masses and inertias that have these values.
+        prior: Width of the file's values as a share, if they were asked for as a prior.
         date: When it was made, ISO format.
     """
 
@@ -195,6 +199,8 @@ class Identification:
     rank: int
     condition: float
     shapes: Sequence[float] = field(default_factory=list)
+    bodies: str = ""
+    prior: float | None = None
     date: str = ""
 
     def write(self) -> None:

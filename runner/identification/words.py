@@ -33,8 +33,18 @@ def answer_lines(found: Identification) -> Iterator[str]:
         f"{len(known)} of {len(found.parameters)} determined parameters are known within 10 %, {len(rough)} more "
         f"within 50 %; the interval of the others is wider than half of their value."
     )
+    if found.prior is not None:
+        shares = [(one.prior_share, one.name) for one in found.parameters if one.prior_share is not None]
+        alone = [name for share, name in sorted(shares, reverse=True) if share > _ROUGH]
+        yield (
+            f"Values are combined with those of the robot's file, {per_cent(found.prior)} wide, as asked for; unseen "
+            f"torques are predicted without them. More than half of {len(alone)} values is the file's"
+            f"{f': {_few(alone)}' if alone else ''}."
+        )
     if found.untold:
         yield f"Not determined: {_few([one.name for one in found.untold])}."
+    if found.bodies:
+        yield found.bodies
     yield from doubts(found)
 
 

@@ -16,6 +16,7 @@ from runner.metrics import effort, positioning, tracking
 from runner.metrics.family import MetricContext
 from runner.metrics.summary import measure, of_run
 from runner.recordings.columns_map import Holds, Side, Signal, stacked
+from runner.recordings.long_motion import with_long_motion
 from runner.recordings.smoothing import derivative
 from runner.robots.robot import end_points
 from runner.simulation.recorder import describe
@@ -77,7 +78,7 @@ def setting_of(run: Run) -> Setting:
     if run.failure is not None:
         raise RunnerError(f"{run.folder}: {run.failure}; a recording is compared with a run that ended well")
     try:
-        config = validate(run.composed)
+        config = with_long_motion(validate(run.composed))
     except ConfigError as error:
         raise RunnerError(f"run {run.hash} cannot be made again: {'; '.join(error.problems)}") from None
     if config.arm.urdf != run.urdf:

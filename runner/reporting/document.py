@@ -285,6 +285,7 @@ class Document:
         shown: Number of chapters that HTML shows; it folds the others behind "All details". None shows all.
         notes: Lines below the count of verdicts there: what their words mean, caveats; inline mathematics as in Text.
         map: Map of answers, below the first paragraph of the abstract.
+        dated: What the date is of.
     """
 
     title: str
@@ -297,6 +298,7 @@ class Document:
     key_numbers: Sequence[tuple[str, str, str]] = ()
     shown: int | None = None
     map: AnswerMap | None = None
+    dated: str = "Newest run"
 
     @property
     def answers(self) -> Sequence[Notice]:

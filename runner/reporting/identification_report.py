@@ -41,6 +41,7 @@ def identification_document(found: Identification) -> Document:
         abstract="\n".join(literal(line) for line in [first, " ".join(rest)]),
         sections=sections,
         date=found.date,
+        dated="Identified",
         key_numbers=_key_numbers(found),
     )
 
@@ -76,15 +77,25 @@ def accuracy(found: Identification) -> Table:
 
 def parameters(found: Identification) -> Table:
     """Return the determined parameters with their intervals."""
+    with_prior = found.prior is not None
+
+    def share(one: Parameter) -> list[Cell]:
+        text: Cell = "" if one.prior_share is None else Number(100.0 * one.prior_share, digits=2)
+        return [text] if with_prior else []
+
     rows: list[list[Cell]] = [
         [_full_name(one), _unit(one), Number(one.value),
          Number(None, one.value - one.half, one.value + one.half),
-         "" if one.file is None else Number(one.file),
+         "" if one.file is None else Number(one.file), *share(one),
          ", ".join(word for word, said in (("methods differ", one.differs), ("logs differ", one.spread)) if said)]
         for one in found.parameters
     ]  # fmt: skip
-    header = ["parameter", "unit", *numbers("value", "95 % interval", "robot's file"), "rests on"]
-    return Table("Parameters that the logs determine.", header, rows)
+    last = ["from the file (%)"] if with_prior else []
+    header = ["parameter", "unit", *numbers("value", "95 % interval", "robot's file", *last), "rests on"]
+    caption = "Parameters that the logs determine."
+    if with_prior:
+        caption = "Parameters by the logs and the robot's file, with the share of the file in each value."
+    return Table(caption, header, rows)
 
 
 def _full_name(one: Parameter) -> str:

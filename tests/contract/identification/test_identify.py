@@ -11,6 +11,7 @@ from support.identified_logs import KnownArm, write_log
 
 import runner
 from runner.identification.result import open_identification
+from runner.reporting.identification_report import parameters
 from runner.reporting.mathml import faulty
 from runner.reporting.stored import compose_report
 
@@ -81,6 +82,34 @@ def test_values_lie_in_their_intervals_and_the_answer_names_the_open_questions(m
     assert runner.open_identification(found.folder) == found
     assert str(found.folder) in repr(found)
     assert "<p>" in found._repr_html_()
+
+
+@pytest.mark.costs(3)
+def test_a_prior_is_asked_for_and_its_share_is_shown(made, cli, tmp_path):
+    path, columns, plain = made
+    found = runner.identify(
+        path, columns=columns, robot="macro", friction="coulomb", cutoff=10.0, prior=0.3, outputs=tmp_path
+    )
+    inertial = [one for one in found.parameters if one.file is not None]
+    assert len(inertial) == 16
+    assert all(0.0 <= one.prior_share <= 1.0 for one in inertial)
+    assert "combined with those of the robot's file, 30 % wide, as asked for" in " ".join(found.sentences)
+    assert found.command.endswith("--prior 30%")
+    assert "from the file (%)" in str(parameters(found).header)
+    assert all(one.prior_share is None for one in plain.parameters)
+    assert "from the file (%)" not in str(parameters(plain).header)
+    for width in ("30", "0%", "101%", "-1%", "x%"):
+        ending = cli("identify", path, "--columns", columns, "--robot", "macro", f"--prior={width}")
+        assert ending.code == 2, width
+        assert "Allowed: above 0% up to 100%, such as 30%." in ending.err
+    with pytest.raises(runner.RunnerError, match="prior: not a share"):
+        runner.identify(path, columns=columns, robot="macro", prior=30.0)
+
+
+def test_the_answer_says_whether_bodies_have_the_values(made):
+    assert any("bodies with positive masses and inertias" in line.lower() for line in made[2].sentences)
+    document, _ = compose_report([made[2].folder])
+    assert document.dated == "Identified"
 
 
 def test_the_report_has_no_fault_and_names_the_second_method(made):

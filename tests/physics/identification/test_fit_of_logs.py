@@ -6,7 +6,7 @@ import pytest
 from support.identified_logs import KnownArm
 
 from runner.identification.checks import find_flags, find_payload_changes, second_method
-from runner.identification.fit import fit_logs
+from runner.identification.fit import fit_logs, residual_sizes, row_weights
 from runner.identification.friction_kinds import TERMS
 from runner.identification.held_out import file_share, predict_held_out
 from runner.identification.log_rows import log_rows
@@ -92,6 +92,27 @@ def test_contacts_count_less(arm):
     wanted = truth(arm, "coulomb")
     robust, ordinary = (np.abs(values[:-1] - wanted).max() for values in (hit.state.values, blunt.values))
     assert robust < 0.3 * ordinary
+
+
+@pytest.mark.costs(2)
+def test_a_joint_whose_torque_contradicts_the_others_does_not_count_ever_more(arm):
+    t, q, dq, ddq, tau = noisy(arm.log(20.0), size=0.02)
+    growth = []
+    for gain in (1.0, 1.2):
+        fit = fit_logs([rows_of(arm, (t, q, dq, ddq, tau * np.array([1.0, 1.0, gain])))], "coulomb")
+        renewed = row_weights(fit.system, fit.rest, residual_sizes(fit.system, fit.rest))[0]
+        used = fit.weights > 0.0
+        parts = [used & (fit.system.joint == joint) for joint in range(3)]
+        by_joint = [np.median(renewed[part] / fit.weights[part]) for part in parts]
+        growth.append(max(by_joint) / min(by_joint))
+    assert growth[0] < 1.1
+    assert growth[1] > 3.0
+
+
+@pytest.mark.parametrize("size", [0.0, 0.05])
+def test_an_interval_is_never_narrower_than_that_of_white_residuals(arm, size):
+    fit = fit_logs([rows_of(arm, noisy(arm.log(), size=size))], "coulomb")
+    assert (fit.within[fit.taken] >= fit.white[fit.taken]).all()
 
 
 def test_a_joint_that_does_not_move_is_left_out_and_told_apart_from_nothing(arm):
