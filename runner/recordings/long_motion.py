@@ -5,8 +5,8 @@ from dataclasses import dataclass, fields, replace
 import numpy as np
 from scipy.spatial import cKDTree
 
+from runner.assembly.run_config import RunConfig
 from runner.base.arrays import FloatArray
-from runner.config.run import RunConfig
 from runner.trajectories.joint_motion import TipOfJoints
 
 _STEPS = 2  # Newton steps to a point of the curve near the nearest one
