@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable, Iterator
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 
 from runner.base.quantities import ROUNDING as SMALLEST
 from runner.base.quantities import format_range, number, quantity
@@ -28,7 +28,7 @@ class Condition:
     text: str
     holds: bool
     measured: str
-    values: tuple[Measured, ...] = ()
+    values: tuple[Measured, ...] = field(default=(), repr=False)  # `measured` shows them
 
     def __bool__(self) -> bool:
         """Refuse: a branch of prose that hangs on a condition says something that no condition guards."""
