@@ -114,7 +114,7 @@ def program(pattern: str, what: str, express: Callable[[], Expressed], lanes: in
     return _program(hashlib.sha256(content.encode()).hexdigest(), what, ours, lanes, _Maker(express))
 
 
-PACKAGES = ("analysis", "controllers", "plants", "sensing", "simulation", "symbolic")
+PACKAGES = ("analysis", "assembly", "controllers", "plants", "sensing", "simulation", "symbolic")
 """Packages whose source decides what a program computes; kept machine code of another source is not used."""
 
 

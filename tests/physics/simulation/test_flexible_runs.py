@@ -5,7 +5,7 @@ import pytest
 from support.arms import checked
 from support.physics import assert_order
 
-from runner.assembly.flexibility import with_nominal_motors
+from runner.assembly.flexibility import with_nominal_flexibility
 from runner.assembly.validation import validate
 from runner.base.errors import ConfigError
 from runner.config.compose.compose import compose
@@ -193,5 +193,5 @@ def test_the_armature_of_rigid_joints_stays_where_it_is():
     assert flexibility.motors.tolist() == [2.0] * 3 + [0.0] * 3
     links = links_of(config.arm.model, flexibility.flexible)
     assert links.armature.tolist() == [0.0] * 3 + [1e-4] * 3
-    nominal = with_nominal_motors(config, config.arm).model
+    nominal = with_nominal_flexibility(config, config.arm).model
     assert nominal.armature.tolist() == [2.0] * 3 + [1e-4] * 3
