@@ -21,6 +21,7 @@ _PER_CENT = re.compile(r"(\d{1,3}(?:\.\d{1,6})?)\s*%")
 
 def add_arguments(parser: Parser) -> None:
     """Add the arguments."""
+    parser.usage = "runner identify --columns MAP --robot ROBOT [OPTION ...] LOG [LOG ...]"
     parser.add_argument("logs", type=Path, nargs="+", metavar="LOG", help="logs of one arm: files or folders")
     parser.add_argument(
         "--columns", type=Path, action="append", required=True, metavar="MAP",

@@ -70,7 +70,7 @@ MUTANTS = [
             "evaluate(at_stage, stage_context)",
             "evaluate(traces, stage_context)",
         ),
-        ("the path of a stage not shifted", "Shifted(context.trajectory, traces.offsets[index])", "context.trajectory"),
+        ("the path of a stage not shifted", "context.at_stage(traces.offsets[index])", "context"),
     ),
     *_of(
         "metrics/summary.py",

@@ -59,6 +59,7 @@ class _Reproduced:
 
 def add_arguments(parser: Parser) -> None:
     """Add the arguments."""
+    parser.usage = "runner reproduce [OPTION ...] [NAME] [OVERRIDE ...]"
     studies = ", ".join((*study_names(), AUDIT, "all"))
     study = parser.add_argument(
         "study", nargs="?", default="all", metavar="NAME", help=f"{studies} or a folder (default: all)"

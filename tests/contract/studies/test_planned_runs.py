@@ -86,7 +86,7 @@ SOME = {
         ("thesis_beyond", 267, 0),
         ("xarm7", 121, 0),
         ("meca500", 250, 36),
-        ("engines", 253, 0),
+        ("engines", 255, 0),
         ("precision", 90, 0),
         ("benchmark", 2444, 0),
     ],
