@@ -3,6 +3,7 @@
 import argparse
 import math
 import os
+import re
 import sys
 from collections.abc import Callable, Iterable, Sequence
 from pathlib import Path
@@ -67,6 +68,12 @@ def seconds(text: str) -> float:
     if time is None or time <= 0.0:
         raise argparse.ArgumentTypeError(f"not a time ({text!r}). Allowed: a time above 0, such as 20ms.")
     return time
+
+
+def read_per_cent(text: str) -> float | None:
+    """Return the share of a string such as 10%; None for any other."""
+    found = re.fullmatch(r"(\d{1,3}(?:\.\d{1,6})?)\s*%", text)
+    return float(found[1]) / 100.0 if found else None
 
 
 def config_folder(text: str) -> Path:

@@ -1,7 +1,6 @@
 """Count of the repetitions that a sweep needs, printed by `--detect`: a pilot is simulated, not the sweep."""
 
 import argparse
-import re
 import shlex
 import sys
 from collections.abc import Iterator, Sequence
@@ -9,6 +8,7 @@ from typing import TYPE_CHECKING
 
 from runner.base.errors import ConfigError, RunnerError
 from runner.base.sanitize import one_line
+from runner.cli.arguments import read_per_cent
 
 if TYPE_CHECKING:
     from runner.config.compose.composer import Composer
@@ -23,9 +23,8 @@ def difference_share(text: str) -> float:
     """Return the share of a text such as "10%"."""
     from runner.statistics.conclusion import SHARE  # NumPy, without which words are completed
 
-    found = re.fullmatch(r"(\d+(?:\.\d+)?)\s*%", text)
-    share = float(found[1]) / 100.0 if found else 0.0
-    if not SHARE < share <= 1.0:
+    share = read_per_cent(text)
+    if share is None or not SHARE < share <= 1.0:
         raise argparse.ArgumentTypeError(
             f"not a difference that can be shown ('{text}'). Allowed: above {100 * SHARE:g}% up to 100%, such as 10%."
         )

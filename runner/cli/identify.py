@@ -6,17 +6,14 @@ fit has not seen. The last line is the folder of the result, with a report.
 Example: runner identify log1.csv log2.csv --columns columns.yaml --robot ur5e
 """
 
-import re
 import shlex
 import sys
 from argparse import ArgumentTypeError, Namespace
 from pathlib import Path
 
 from runner.base.sanitize import one_line
-from runner.cli.arguments import Parser, seconds
+from runner.cli.arguments import Parser, read_per_cent, seconds
 from runner.identification.friction_kinds import KINDS
-
-_PER_CENT = re.compile(r"(\d{1,3}(?:\.\d{1,6})?)\s*%")
 
 
 def add_arguments(parser: Parser) -> None:
@@ -44,9 +41,8 @@ def add_arguments(parser: Parser) -> None:
 
 def _width(text: str) -> float:
     """Return the share of a text such as "30%"."""
-    number = _PER_CENT.fullmatch(text)
-    share = float(number[1]) / 100.0 if number else 0.0
-    if not 0.0 < share <= 1.0:
+    share = read_per_cent(text)
+    if share is None or not 0.0 < share <= 1.0:
         raise ArgumentTypeError(f"not a width ('{text}'). Allowed: above 0% up to 100%, such as 30%.")
     return share
 

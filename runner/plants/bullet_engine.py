@@ -8,8 +8,6 @@ from runner.base.arrays import FloatArray
 from runner.base.lazy_modules import pin, pybullet
 from runner.plants.bullet_servers import SERVERS
 from runner.plants.compiled_motion import CompiledLinksTorque
-from runner.plants.decoupled import default_step as default_step
-from runner.plants.flexible_config import modes as modes
 from runner.plants.plant import Plant
 from runner.robots.model import RobotModel
 from runner.robots.mounting import TOOL_MOUNT
