@@ -126,8 +126,7 @@ class Plan(ABC):
     def _compose(self, options: Sequence[str], keys: Sequence[SweptKey], root: str) -> Template | ConfigError:
         own = self._source.config_dirs
         try:
-            places = self._source.places.setdefault((root, *options), {})
-            return Template(self._source.load(options, root), root, own, keys, places)
+            return Template(self._source.load(options, root), root, own, keys)
         except ConfigError as error:
             return error
 

@@ -34,8 +34,6 @@ class Template:
         root: Name of the root config in conf/: "config" for a run, "calibrate" for a calibration.
         config_dirs: User config folders.
         keys: The value keys, in the order of the command line.
-        places: Entries that a key sets, by key and types of its values, as templates of the same options found them;
-            the template adds to it.
 
     Attributes:
         root: Name of the root config.
@@ -45,12 +43,8 @@ class Template:
         ConfigError: if a value cannot be composed.
     """
 
-    def __init__(
-        self, config: DictConfig, root: str, config_dirs: Sequence[Path], keys: Sequence[SweptKey],
-        places: dict[object, Sequence[Place]] | None = None,
-    ) -> None:  # fmt: skip
+    def __init__(self, config: DictConfig, root: str, config_dirs: Sequence[Path], keys: Sequence[SweptKey]) -> None:
         self.root, self._config_dirs, self._keys = root, config_dirs, keys
-        self._places = {} if places is None else places
         self._chosen: Mapping[str, Any] = config.hydra.runtime.choices
         self._config = OmegaConf.masked_copy(config, [str(key) for key in config if key != "hydra"])
         OmegaConf.set_struct(self._config, True)
@@ -145,13 +139,9 @@ class Template:
         types = {int} if isinstance(key.values, range) else _types_in(key.values)
         if types >= {int, float}:  # a float key has floats in any case
             return [change(number) for number in range(len(key.values))]
-        known = self._places.get((key.name, frozenset(types)), ())
-        if known and all(repr(get(self._first, place)) == repr(first) for place in known):
-            return _Same(known, key.values)
         places = change(other)
         pairs = [(get(self._first, place), value) for place, value in places.items()]
         if all(repr(pair) == repr((first, key.values[other])) for pair in pairs):
-            self._places[key.name, frozenset(types)] = list(places)
             return _Same(list(places), key.values)
         if types == {int} and all(repr(pair) == repr((float(first), float(key.values[other]))) for pair in pairs):
             return _Same(list(places), key.values, as_floats=True)

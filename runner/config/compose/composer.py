@@ -48,12 +48,10 @@ class Composer:
 
     Attributes:
         config_dirs: Config folders of the user, as absolute paths.
-        places: What plans have found of the configs of the same options; see `Template`.
     """
 
     def __init__(self, config_dirs: Sequence[Path] = (), root: str = "config") -> None:
         take_shortcuts()
-        self.places: dict[object, dict[object, Any]] = {}
         self.config_dirs, self._root = tuple(folder.resolve() for folder in config_dirs), root
 
     @property
