@@ -5,13 +5,13 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
+from runner.assembly.long_motion import with_long_motion
 from runner.assembly.validation import validate
 from runner.base.atomic import write_atomically
 from runner.base.errors import RunnerError
 from runner.config.compose.compose import compose
 from runner.doctor.log import LONGEST_GAP, examine_log
 from runner.doctor.log_files import MAP, MOTION, map_text
-from runner.recordings.long_motion import with_long_motion
 from runner.store import Run
 from runner.sweeps import job
 

@@ -7,6 +7,7 @@ from functools import cached_property
 import numpy as np
 import pinocchio as pin
 
+from runner.assembly.long_motion import with_long_motion
 from runner.assembly.run_config import RunConfig
 from runner.assembly.validation import validate
 from runner.base.arrays import FloatArray
@@ -16,7 +17,6 @@ from runner.metrics import effort, positioning, tracking
 from runner.metrics.family import MetricContext
 from runner.metrics.summary import measure, of_run
 from runner.recordings.columns_map import Holds, Side, Signal, stacked
-from runner.recordings.long_motion import with_long_motion
 from runner.recordings.smoothing import derivative
 from runner.robots.robot import end_points
 from runner.simulation.recorder import describe

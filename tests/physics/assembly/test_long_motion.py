@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from runner.recordings.long_motion import with_long_motion
+from runner.assembly.long_motion import with_long_motion
 
 
 @pytest.fixture(scope="module")
