@@ -25,7 +25,7 @@ _LONG = 120  # characters of a line; a longer string has a line for each sentenc
 _SENTENCE = re.compile(r"(?<=[.;?!]) +(?=\S)")
 _MOST_SHOWN = 80  # lines of a difference
 _HREF = "{http://www.w3.org/1999/xlink}href"
-_HASH = re.compile(r"\b(?:[0-9a-f]{24}|(?=\d*[a-f])[0-9a-f]{8})\b")
+_HASH = re.compile(r"(?<!\w)(?<!\d\.)(?:[0-9a-f]{24}|[0-9a-f]{8})(?!\w|\.\d)")
 _OF_TODAY = ("date", "commit")
 _PRINTED = re.compile(r"(less than )?(-?\d+(?:\.\d+)?)·10([⁻⁰¹²³⁴⁵⁶⁷⁸⁹]+)")
 

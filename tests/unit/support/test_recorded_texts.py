@@ -43,6 +43,13 @@ def test_each_value_is_a_line_without_those_that_are_empty_or_defaults():
     ]
 
 
+@pytest.mark.parametrize("name", ["ab12cd34", "68569973", "0a" * 12, "1" * 24])
+def test_a_name_of_content_is_left_out_and_a_number_is_not(name):
+    assert lines({"text": f"Run {name}, runs/{name}. "})[0] == "text: Run ..., runs/...."
+    kept = {"text": "At 0.12345678 s, of 1234567 and 123456789 ticks."}
+    assert lines(kept) == [f"text: {kept['text']}"]
+
+
 def test_a_row_is_a_line_and_so_is_each_sentence_of_a_long_string():
     first, second = "The first sentence is " + "very " * 20 + "long.", "The second is short; it goes on."
     assert lines({"rows": [["a", 1.0], ["b", None]], "text": f"{first} {second}"}) == [
