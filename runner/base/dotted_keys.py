@@ -85,6 +85,45 @@ def check_references(config: Mapping[str, Any]) -> None:
     _Sizes(config).of((), config)
 
 
+def with_references(config: Mapping[str, Any]) -> "dict[str, Any] | None":
+    """Return a copy of a composed config in which each reference such as ${robot.period} is the value of its key.
+
+    OmegaConf takes ten times as long for the same.
+
+    Args:
+        config: The config as plain data with unresolved references.
+
+    Returns:
+        The copy; None if the config needs OmegaConf: for a reference in a longer string or relative to its place, and
+        for one to a key that is missing or lies in a list or in the value of another reference.
+    """
+    try:
+        return {key: _with_references(config, value, 0) for key, value in config.items()}
+    except KeyError:
+        return None
+
+
+_ONE_REFERENCE = re.compile(r"\$\{(\w+(?:\.\w+)*)\}")
+_MISSING = "???"  # in OmegaConf
+
+
+def _with_references(config: Mapping[str, Any], value: Any, depth: int) -> Any:
+    if depth > _DEPTH:
+        raise KeyError(depth)
+    if isinstance(value, dict):
+        return {key: _with_references(config, item, depth + 1) for key, item in value.items()}
+    if isinstance(value, list):
+        return [_with_references(config, item, depth + 1) for item in value]
+    if not (isinstance(value, str) and "${" in value):
+        return value
+    target: Any = config
+    for key in match[1].split(".") if (match := _ONE_REFERENCE.fullmatch(value)) else ("",):
+        target = target[key] if isinstance(target, dict) else _MISSING
+    if target == _MISSING:
+        raise KeyError(value)
+    return _with_references(config, target, depth + 1)
+
+
 class _Sizes:
     """Sizes of values by path, including the values to which they refer; each is computed once."""
 

@@ -45,9 +45,10 @@ def quiet_environment() -> None:
     """Limit numerical libraries to one thread, and let Hydra raise exceptions unchanged; call before importing numpy.
 
     Matplotlib logs errors only: if the home folder is not writable, it would warn about each folder that it creates
-    elsewhere.
+    elsewhere. Pydantic would search every installed package for plug-ins to it.
     """
     for name in ("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS"):
         os.environ.setdefault(name, "1")
     os.environ["HYDRA_FULL_ERROR"] = "1"
+    os.environ.setdefault("PYDANTIC_DISABLE_PLUGINS", "__all__")
     logging.getLogger("matplotlib").setLevel(logging.ERROR)

@@ -17,6 +17,7 @@ from pathlib import Path
 from types import ModuleType
 from typing import TYPE_CHECKING
 
+from runner.base.entry_points import entry_points_of
 from runner.base.paths import package_dir
 
 if TYPE_CHECKING:
@@ -61,9 +62,7 @@ def names() -> tuple[str, ...]:
 
 def installed() -> dict[str, str]:
     """Return the modules of the commands of installed packages, by name; takes milliseconds."""
-    from importlib.metadata import entry_points
-
-    return {point.name: point.value for point in entry_points(group=f"runner.{GROUP}") if point.name not in names()}
+    return {point.name: point.value for point in entry_points_of(GROUP) if point.name not in names()}
 
 
 def module_of(name: str) -> str:

@@ -176,13 +176,13 @@ def _split(overrides: Sequence[str]) -> tuple[list[str], list[str]]:
 
 def _simulate(line: _Line, overrides: Sequence[str], config_dirs: Sequence[Path], command: str) -> int:
     """Simulate the run or the sweep of a line; print its folder as the last line."""
-    from runner.config.compose.compose import compose
-    from runner.config.compose.composer import Composer
-
     if line.many:
+        from runner.config.compose.composer import Composer
         from runner.sweeps.run import sweep_typed
 
         return print_sweep(sweep_typed(*_split(overrides), Composer(config_dirs, line.root), command))
+    from runner.config.compose.compose import compose
+
     composed = compose(overrides, config_dirs, line.root)
     from runner.assembly.validation import validate  # after the composition, so that errors are reported at once
 

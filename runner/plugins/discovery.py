@@ -11,13 +11,13 @@ import importlib
 import inspect
 import os
 import sys
-from collections.abc import Mapping, Sequence
-from functools import lru_cache
+from collections.abc import Sequence
 from importlib.util import find_spec
 from pathlib import Path
 from types import ModuleType
 from typing import TYPE_CHECKING
 
+from runner.base.entry_points import entry_points_of
 from runner.base.errors import ConfigError, RunnerError, describe_part_error, nearest, unknown
 from runner.base.former_names import explain_module
 
@@ -97,12 +97,9 @@ def named_part(line: str) -> str:
 
 
 def added_parts(group: str) -> "tuple[EntryPoint, ...]":
-    """Return the parts of a group from outside this package.
-
-    The entry points of installed packages are cached by `sys.path`, because reading them takes milliseconds.
-    """
+    """Return the parts of a group from outside this package."""
     of_command_line = [entry_point(line) for line in in_use() if line.partition("=")[0] == group]
-    return (*of_command_line, *_installed(tuple(sys.path)).get(group, ()))
+    return (*of_command_line, *entry_points_of(group))
 
 
 def has_users_parts() -> bool:
@@ -170,14 +167,6 @@ def digests() -> dict[str, str]:
         content = b"\0".join(path.read_bytes() for path in source_files(entry_point(text).value))
         found[text] = hashlib.sha256(content).hexdigest()[:24]
     return found
-
-
-@lru_cache(maxsize=16)
-def _installed(_path: tuple[str, ...]) -> "Mapping[str, Sequence[EntryPoint]]":
-    from importlib.metadata import entry_points  # slow, which completion of words does without
-
-    found = entry_points()
-    return {group: tuple(found.select(group=f"runner.{group}")) for group in GROUPS}
 
 
 def _is_file(module: str) -> bool:

@@ -14,7 +14,7 @@ from runner.schema.units import Unit
 class StrictModel(BaseModel):
     """Base of every config model: no unknown key, no silent conversion, no NaN or infinity, immutable."""
 
-    model_config = ConfigDict(extra="forbid", strict=True, allow_inf_nan=False, frozen=True)
+    model_config = ConfigDict(extra="forbid", strict=True, allow_inf_nan=False, frozen=True, defer_build=True)
 
     @classmethod
     def find_field(cls, path: Sequence[str]) -> FieldInfo | None:

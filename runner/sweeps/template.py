@@ -13,9 +13,10 @@ from typing import Any
 from omegaconf import DictConfig, OmegaConf
 
 from runner.base.dotted_keys import get
-from runner.config.compose.compose import from_hydra
+from runner.config.compose.compose import resolve
 from runner.config.compose.composer import put_values
 from runner.config.compose.composition_errors import COMPOSITION_ERRORS, explain
+from runner.config.compose.unresolved import Unresolved
 from runner.config.composed import Composed
 from runner.sweeps.swept import SweptKey
 
@@ -104,7 +105,8 @@ class Template:
             put_values(config, texts)
         except COMPOSITION_ERRORS as error:
             raise explain(error, self._config_dirs) from None
-        return from_hydra(config, self._chosen, texts, self._config_dirs)
+        values: Any = OmegaConf.to_container(config, resolve=False)
+        return resolve(Unresolved(values, self._chosen, {}), texts, self._config_dirs)
 
     def _find_changes(self) -> "list[Sequence[Changes]] | None":
         """Return the changes of each value of each key from the first cell, or None if keys may interact.

@@ -18,8 +18,9 @@ from hydra.core.override_parser.types import OverrideType
 from hydra.types import RunMode
 
 from runner.base.errors import ConfigError
-from runner.config.compose.compose import from_hydra
+from runner.config.compose.compose import resolve
 from runner.config.compose.composer import Composer
+from runner.config.compose.unresolved import from_hydra
 from runner.sweeps.plan import Grid
 from runner.sweeps.typed import plan_typed
 
@@ -77,7 +78,7 @@ def compose_plain(job: Sequence[str], add: bool = False) -> dict[str, Any]:
     for each in values if add else ():
         each.type = OverrideType.FORCE_ADD if each.type == OverrideType.CHANGE else each.type
     ConfigLoaderImpl._apply_overrides_to_config(values, config)
-    return dict(from_hydra(config, config.hydra.runtime.choices, job, ()).resolved)
+    return dict(resolve(from_hydra(config), job, ()).resolved)
 
 
 def _typed(line: Sequence[str]) -> list[str]:

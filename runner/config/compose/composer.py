@@ -24,15 +24,14 @@ from runner.base.errors import ConfigError
 from runner.base.paths import conf_dir
 from runner.base.sanitize import quoted
 from runner.config.compose.composition_errors import COMPOSITION_ERRORS, explain
-from runner.config.compose.files import STUDY_GROUPS, built_in_studies, groups, state_of, user_overrides
-from runner.config.compose.kept_options import key_of, read_options, write_options
+from runner.config.compose.files import groups, user_overrides
+from runner.config.compose.kept_options import files_of, key_of, read_options, write_options
 from runner.config.compose.overrides import force, prepare
 from runner.config.compose.shortcuts import KeptRepository, kept_files, take_shortcuts
 from runner.config.compose.sources import VERSION_BASE, checked_sources
 from runner.plugins.discovery import in_use
 
 _KEPT = 512  # combinations of options, about 30 kB each
-_MOST = 1000  # files and folders in the config folders; if there are more, Hydra composes each time
 _SWEEPER = (
     ("address", str, "that of a Dask scheduler, as tcp://127.0.0.1:8786"),
     ("params", Mapping, "keys with their values"),
@@ -105,8 +104,7 @@ class Composer:
     def _of_options(self, options: Sequence[Override], root: str, mode: RunMode) -> DictConfig:
         # The last option of a group counts. The order of the groups has no effect.
         lines = tuple(str(each.input_line) for each in sorted(options, key=lambda each: each.key_or_group))
-        studies = [folder / group for group in STUDY_GROUPS for folder in built_in_studies(group)]
-        files = state_of((conf_dir(), *studies, *self.config_dirs), _MOST)
+        files = files_of(self.config_dirs)
         load = _load_options if files is not None else _load_options.__wrapped__
         others = files, in_use()
         config: DictConfig = pickle.loads(load(self.config_dirs, lines, root, mode, *others))  # noqa: S301

@@ -3,15 +3,12 @@
 import re
 from collections.abc import Mapping, Sequence
 from pathlib import Path
-from typing import Any
-
-from omegaconf import OmegaConf
 
 from runner.base.bounded_yaml import CONFIG, read_yaml
 from runner.base.dotted_keys import dotted, leaves, split_override
 from runner.base.paths import conf_dir
-from runner.config.compose.composer import Composer, parse
 from runner.config.compose.files import place_in
+from runner.config.compose.unresolved import read_unresolved
 from runner.config.composed import Composed
 
 _NO_KEYS = ("defaults", "hydra")
@@ -30,26 +27,30 @@ def given_keys(composed: Composed) -> dict[str, str]:
         found |= dict.fromkeys(keys, f"experiment={name}")
     for override in composed.overrides:
         key, _ = split_override(override)
-        value = parse([override])[0].value() if "{" in override else None
+        value = _mapping(override) if "{" in override else None
         inner = [dotted(place) for place, _ in leaves(value, lists=False)] if isinstance(value, dict) else []
         found |= dict.fromkeys([f"{key}.{name}" for name in inner] or [key], override)
     return found
+
+
+def _mapping(override: str) -> object:
+    from runner.config.compose.composer import parse  # imports Hydra
+
+    return parse([override])[0].value()
 
 
 def swept_keys(composed: Composed) -> list[str]:
     """Return the keys to which the chosen experiments give several values, which `runner -m` sweeps."""
     if not any(text.startswith("experiment=") for text in composed.overrides):
         return []
-    params = Composer(composed.config_dirs, composed.root).load(composed.overrides).hydra.sweeper.params
-    plain: Any = {} if params is None else OmegaConf.to_container(params, resolve=False)
-    return [dotted(place) for place, _ in leaves(plain, lists=False)]
+    params = read_unresolved(composed.overrides, composed.config_dirs, composed.root).params
+    return [dotted(place) for place, _ in leaves(params, lists=False)]
 
 
 def references_in(composed: Composed) -> set[str]:
     """Return the dotted keys to which values of a config refer, as in ${robot.period}."""
-    config = Composer(composed.config_dirs, composed.root).load(composed.overrides)
-    plain: Any = OmegaConf.to_container(config, resolve=False)
-    values = (value for place, value in leaves(plain) if place[0] not in _NO_KEYS and isinstance(value, str))
+    unresolved = read_unresolved(composed.overrides, composed.config_dirs, composed.root).values
+    values = (value for place, value in leaves(unresolved) if place[0] not in _NO_KEYS and isinstance(value, str))
     return {key for value in values for key in _REFERENCE.findall(value)}
 
 

@@ -7,19 +7,29 @@ it equals the one composed, node by node, with types and flags.
 
 import hashlib
 import json
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from importlib import import_module
 from importlib.metadata import version
 from pathlib import Path
-from typing import Any
-
-from hydra.conf import HydraConf
-from omegaconf import DictConfig, ListConfig, OmegaConf
-from omegaconf.base import Container
+from typing import TYPE_CHECKING, Any
 
 from runner.base.cache import read_answer, write_answer
+from runner.base.paths import conf_dir
+from runner.config.compose.files import STUDY_GROUPS, built_in_studies, state_of
 
+if TYPE_CHECKING:
+    from omegaconf import DictConfig
+
+RUN = "RunMode.RUN"
+"""Hydra's mode for one run, as text."""
 _FLAGS = ("struct", "readonly")
+_MOST = 1000  # files and folders in the config folders; if there are more, Hydra composes each time
+
+
+def files_of(config_dirs: Sequence[Path]) -> tuple[tuple[str, int, int], ...] | None:
+    """Return the state of every config file, on which composed options depend; None for too many files."""
+    studies = [folder / group for group in STUDY_GROUPS for folder in built_in_studies(group)]
+    return state_of((conf_dir(), *studies, *config_dirs), _MOST)
 
 
 def key_of(*parts: object) -> str:
@@ -29,17 +39,25 @@ def key_of(*parts: object) -> str:
     return f"options-{hashlib.sha256(json.dumps(state).encode()).hexdigest()}"
 
 
-def read_options(key: str) -> DictConfig | None:
-    """Return the composed options of a key; None if there are none, or the entry is damaged."""
+def read_content(key: str) -> dict[str, Any] | None:
+    """Return the composed options of a key as plain data; None if there are none."""
     content = read_answer(key)
+    return content if isinstance(content, dict) else None
+
+
+def read_options(key: str) -> "DictConfig | None":
+    """Return the composed options of a key; None if there are none, or the entry is damaged."""
+    content = read_content(key)
     try:
-        return _restored(content) if isinstance(content, dict) else None
+        return None if content is None else _restored(content)
     except Exception:  # an entry of another kind; the options are composed again
         return None
 
 
-def write_options(key: str, config: DictConfig) -> None:
+def write_options(key: str, config: "DictConfig") -> None:
     """Keep composed options if plain data restores them."""
+    from omegaconf import OmegaConf
+
     content: Any = OmegaConf.to_container(config, resolve=False, enum_to_str=True)
     try:
         kept = json.loads(json.dumps(content, allow_nan=False))
@@ -49,8 +67,11 @@ def write_options(key: str, config: DictConfig) -> None:
         return
 
 
-def _restored(content: Mapping[str, Any]) -> DictConfig:
+def _restored(content: Mapping[str, Any]) -> "DictConfig":
     """Return a config from plain data; Hydra's own node has the types of Hydra's classes."""
+    from hydra.conf import HydraConf
+    from omegaconf import OmegaConf
+
     config = OmegaConf.create({name: None if name == "hydra" else value for name, value in content.items()})
     hydra = OmegaConf.structured(HydraConf)
     launcher = import_module("hydra._internal.core_plugins.basic_launcher")  # Hydra may import its plug-ins anew
@@ -66,7 +87,7 @@ def _restored(content: Mapping[str, Any]) -> DictConfig:
     return config
 
 
-def _order(node: DictConfig, content: Mapping[str, Any]) -> None:
+def _order(node: "DictConfig", content: Mapping[str, Any]) -> None:
     """Put the keys of Hydra's node into the order of the data, which may lack some of them."""
     nodes = node.__dict__["_content"]
     for name, value in content.items():
@@ -77,6 +98,9 @@ def _order(node: DictConfig, content: Mapping[str, Any]) -> None:
 
 def _alike(one: Any, other: Any) -> bool:
     """Return True if two nodes have the same classes, types, flags, keys in the same order, and values."""
+    from omegaconf import DictConfig, ListConfig
+    from omegaconf.base import Container
+
     if type(one) is not type(other) or _about(one) != _about(other):
         return False
     if not isinstance(one, Container):

@@ -7,6 +7,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from runner.base.atomic import write_atomically
+from runner.base.entry_points import entry_points_of
 from runner.base.errors import RunnerError, nearest
 from runner.base.former_names import FILES
 from runner.base.paths import STUDY_FILE, example_study_dir, studies_dir, studies_with
@@ -14,8 +15,8 @@ from runner.base.paths import STUDY_FILE, example_study_dir, studies_dir, studie
 if TYPE_CHECKING:
     from importlib.metadata import EntryPoint
 
-GROUP = "runner.studies"
-"""The group of entry points by which an installed package says that it is a study."""
+GROUP = "studies"
+"""The group of entry points by which an installed package says that it is a study, after `runner.`."""
 
 
 @dataclass(frozen=True)
@@ -35,7 +36,7 @@ class Location:
 
 def study_names() -> tuple[str, ...]:
     """Return the names of the installed studies, sorted."""
-    return tuple(sorted({*studies_with(STUDY_FILE), *(point.name for point in _installed())}))
+    return tuple(sorted({*studies_with(STUDY_FILE), *(point.name for point in entry_points_of(GROUP))}))
 
 
 def find_study(text: str, others: Sequence[str] = ()) -> Location:
@@ -50,7 +51,7 @@ def find_study(text: str, others: Sequence[str] = ()) -> Location:
     """
     if (studies_dir() / text / STUDY_FILE).is_file() and "/" not in text:
         return Location(text, studies_dir() / text, f"runner.papers.studies.{text}")
-    for point in _installed():
+    for point in entry_points_of(GROUP):
         if point.name == text:
             return Location(text, _folder_of(point), point.value)
     folder = Path(text).resolve()
@@ -69,12 +70,6 @@ def find_study(text: str, others: Sequence[str] = ()) -> Location:
     raise RunnerError(
         f"no study '{text}'{nearest(text, names)}; studies: {', '.join(names)}, or a folder with a {STUDY_FILE}"
     )
-
-
-def _installed() -> "tuple[EntryPoint, ...]":
-    from importlib.metadata import entry_points  # slow, which completion of words does without
-
-    return tuple(entry_points(group=GROUP))
 
 
 def _folder_of(point: "EntryPoint") -> Path:

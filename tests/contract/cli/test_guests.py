@@ -95,7 +95,7 @@ def test_a_command_that_cannot_be_imported_is_named_with_its_line(cli, tmp_path)
 
 
 def test_the_commands_of_papers_need_no_metadata(monkeypatch):
-    monkeypatch.setattr("importlib.metadata.entry_points", lambda **_: pytest.fail("metadata is read"))
+    monkeypatch.setattr(commands, "entry_points_of", lambda _: pytest.fail("metadata is read"))
     assert commands.groups()["Papers"] == ("audit", "benchmark", "reproduce", "study")
     assert commands.module_of("reproduce") == "runner.papers.commands.reproduce"
 

@@ -9,11 +9,12 @@ from hypothesis import strategies as st
 
 from runner.base import engines, paths
 from runner.base.errors import ConfigError
-from runner.config.compose.compose import compose, from_hydra
+from runner.config.compose.compose import compose, resolve
 from runner.config.compose.composer import Composer, check_composed
 from runner.config.compose.composition_errors import COMPOSITION_ERRORS, explain
 from runner.config.compose.overrides import force
 from runner.config.compose.sources import VERSION_BASE, checked_sources
+from runner.config.compose.unresolved import from_hydra
 
 SHORT = ("robot=macro", "plant=rk4", "duration=0.05")
 
@@ -26,7 +27,7 @@ def plain(overrides, config_dirs=(), root="config"):
             config = hydra.compose(root, force(overrides), return_hydra_config=True)
         config.hydra.overrides.task, config.hydra.job.override_dirname = [], ""  # the Composer gives Hydra only options
         check_composed(config)
-        return from_hydra(config, config.hydra.runtime.choices, overrides, config_dirs, root)
+        return resolve(from_hydra(config), overrides, config_dirs, root)
     except COMPOSITION_ERRORS as error:
         raise explain(error, config_dirs) from None
 

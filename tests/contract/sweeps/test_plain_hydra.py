@@ -5,8 +5,9 @@ from hydra import compose as hydra_compose
 from hydra import initialize_config_dir
 
 from runner.base.paths import conf_dir
-from runner.config.compose.compose import from_hydra
+from runner.config.compose.compose import resolve
 from runner.config.compose.sources import VERSION_BASE, checked_sources
+from runner.config.compose.unresolved import from_hydra
 from tools.plain_hydra.cells import compose_plain
 from tools.plain_hydra.comparison import OUTCOMES, compare
 from tools.plain_hydra.lines import drawn, written
@@ -54,4 +55,4 @@ def test_a_difference_is_found():
 def test_plain_composition_is_that_of_hydras_own_function(job):
     with checked_sources([]), initialize_config_dir(str(conf_dir()), job_name="runner", **VERSION_BASE):
         config = hydra_compose("config", job, return_hydra_config=True)
-    assert compose_plain(job) == from_hydra(config, config.hydra.runtime.choices, job, ()).resolved
+    assert compose_plain(job) == resolve(from_hydra(config), job, ()).resolved
