@@ -7,7 +7,7 @@ from typing import Any, NamedTuple
 from runner.plants.friction_law import JointFriction
 from runner.symbolic.algebra import ArmAlgebra, Factors
 from runner.symbolic.arm import to_scalars
-from runner.symbolic.code import SCRATCH, STATE, Block, Part, Repeat, Slots
+from runner.symbolic.code import SCRATCH, STATE, Block, Part, Repeat, Slots, put
 from runner.symbolic.expression import Value, absolute, both, decay, equal, less, places, select
 from runner.symbolic.vectors import Matrix, Vector, add, product, scale, subtract
 
@@ -179,8 +179,3 @@ class CompiledFriction:
             weight = decay(share if law.exponent == 1 else share * share)[0]
         more: Value = law.stiction[joint] * select(equal(direction[joint], 0.0), 1.0, weight)
         return more
-
-
-def put(space: str, first: int, values: Vector) -> Block:
-    """Return the code that writes values to consecutive slots."""
-    return Block([(space, first + index, value) for index, value in enumerate(values)])

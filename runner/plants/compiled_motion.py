@@ -8,11 +8,10 @@ from typing import TYPE_CHECKING, Any, NamedTuple, Self
 import numpy as np
 
 from runner.base.arrays import FloatArray
-from runner.plants.compiled_friction import put
 from runner.robots.model import RobotModel
 from runner.symbolic.algebra import ArmAlgebra, Factors
 from runner.symbolic.arm import ArmConstants, constants_of, to_scalars
-from runner.symbolic.code import ROWS, SCRATCH, STATE, TABLE, Block, Part, Repeat, Slots
+from runner.symbolic.code import ROWS, SCRATCH, STATE, TABLE, Block, Part, Repeat, Slots, put
 from runner.symbolic.engine import MOST_JOINTS, evaluator
 from runner.symbolic.expression import Value, places
 from runner.symbolic.program import Expressed, Frame, program

@@ -4,14 +4,14 @@ from collections.abc import Callable, Sequence
 from typing import Any, NamedTuple
 
 from runner.plants.compiled_bullet import bullet_scalars, expressed_steps
-from runner.plants.compiled_friction import CompiledFriction, FrictionScalars, friction_scalars, put
+from runner.plants.compiled_friction import CompiledFriction, FrictionScalars, friction_scalars
 from runner.plants.compiled_motion import Mover
 from runner.plants.decoupled import Motion
 from runner.robots.robot import StageBase
 from runner.symbolic.algebra import ArmAlgebra
 from runner.symbolic.arm import ArmConstants, constants_of
 from runner.symbolic.bullet_step import BulletArm
-from runner.symbolic.code import SCRATCH, STATE, Part, Slots
+from runner.symbolic.code import SCRATCH, STATE, Part, Slots, put
 from runner.symbolic.expression import Value, places
 from runner.symbolic.structure import any_number
 from runner.symbolic.vectors import Vector, product, transpose

@@ -53,7 +53,7 @@ _TABLE = """
         wrench
     simulation: batch by_ticks calibration=calibration_job calibration_config=checked_calibration contact=loop.contact
         loop=simulation recorder results run=job sensors
-    symbolic: algebra arm bullet_step code engine expression maths=controllers.maths program regressor structure
+    symbolic: algebra arm backend bullet_step code engine expression maths=controllers.maths program regressor structure
         tangent vectors=compiled.vectors
     trajectories: __init__=trajectories.__init__ circle from_file geometry goal joint_motion=trajectories.joint_motion
         joint_quintic joint_sinusoids joint_waypoints line lissajous motion quintic shaped splines square

@@ -7,6 +7,7 @@ from dataclasses import dataclass
 from typing import Any
 
 from runner.symbolic.expression import Expression, expression, in_order, place
+from runner.symbolic.vectors import Vector
 
 GIVEN, ACTING, ROWS, STATE, SCRATCH, PARS, TABLE = "given", "acting", "rows", "state", "scratch", "pars", "table"
 ARRAYS = (GIVEN, ROWS, STATE, SCRATCH, PARS, TABLE)
@@ -245,3 +246,8 @@ class Slots:
     def number(self, value: float) -> Expression:
         """Return the next parameter, for a number that may differ between runs; see Values."""
         return self.take(PARS, 1)[1][0]
+
+
+def put(space: str, first: int, values: Vector) -> Block:
+    """Return the code that writes values to consecutive slots."""
+    return Block([(space, first + index, value) for index, value in enumerate(values)])

@@ -71,6 +71,7 @@ SHARED = {
     "caveats/setting": "physics/caveats/test_monitor.py",
     "metrics/family": "contract/plugins/test_metrics.py",
     "plants/compiled_friction": "physics/symbolic/test_tick.py",
+    "symbolic/backend": "physics/symbolic/test_law.py",
     "plants/flexible_config": "physics/plants/test_flexible_joints.py",
     "plants/rk4_flexible_links": "physics/plants/test_flexible_links.py",
     "assembly/engine_check": "physics/plants/test_agreement_of_files.py",
