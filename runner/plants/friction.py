@@ -9,8 +9,10 @@ from runner.plants.flexible_joints import FlexibleJoints
 from runner.plants.friction_law import JointFriction
 from runner.plants.plant import Plant, PlantWrapper
 from runner.robots.model import RobotModel
+from runner.symbolic.maths import NUMPY, Array, Backend, Scalar
+from runner.symbolic.vectors import Vector
 
-_PIVOTS = 100  # upper limit; an arm of ten joints needs one if no joint starts or stops, else a few
+MOST_PIVOTS = 100  # upper limit; an arm of ten joints needs one if no joint starts or stops, else a few
 _ROUNDING = 1e-12  # relative to the acting torques
 
 
@@ -163,18 +165,39 @@ def stopping_torques(
     Returns:
         mu, shape (nq,), in N m; and the direction of each joint, as above.
     """
-    direction = direction.copy()
-    for _ in range(_PIVOTS):
-        mu = direction * limit
-        held = direction == 0.0
-        left = speed - mobility @ mu
-        if held.any():
-            mu[held] = solve_symmetric(mobility[np.ix_(held, held)], left[held])
-            left = speed - mobility @ mu
-        too_much = np.where(held, np.abs(mu) - limit, -left * direction / np.diagonal(mobility))
-        wrong = np.flatnonzero(too_much > _ROUNDING * (limit + np.abs(speed) / np.diagonal(mobility)))
-        if not len(wrong):
+    for _ in range(MOST_PIVOTS):
+        mu, direction, agrees = pivot(NUMPY, mobility, speed, limit.tolist(), direction)
+        if agrees:
             break
-        first = wrong[0]
-        direction[first] = np.sign(mu[first]) if held[first] else 0.0
-    return np.clip(mu, -limit, limit), direction
+    return mu, direction
+
+
+def pivot(
+    backend: Backend, mobility: Array, speed: Array, limit: Vector, direction: Array
+) -> tuple[Array, Array, Scalar]:
+    """Return the dry friction for given directions, and the directions after the first wrong one has changed.
+
+    Args:
+        backend: Functions over these numbers.
+        mobility: See stopping_torques.
+        speed: See stopping_torques.
+        limit: See stopping_torques.
+        direction: See stopping_torques.
+
+    Returns:
+        mu within its limits, shape (n,), in N m; the directions, shape (n,); and 1 if none was wrong, else 0.
+    """
+    less, select, size, inertia = backend.less, backend.select, backend.absolute, np.diagonal(mobility).tolist()
+    sliding, sides = direction * np.array(limit), direction.tolist()
+    held = [backend.equal(side, 0.0) for side in sides]
+    stopping = backend.solve_chosen(mobility, speed - mobility @ sliding, held)
+    mu = [select(*choice) for choice in zip(held, stopping.tolist(), sliding.tolist(), strict=True)]
+    left, agrees = (speed - mobility @ np.array(mu)).tolist(), 1.0
+    for i, (at_rest, torque, c, rate) in enumerate(zip(held, mu, limit, inertia, strict=True)):
+        too_much = select(at_rest, size(torque) - c, -left[i] * sides[i] / rate)
+        wrong = less(_ROUNDING * (c + size(speed[i]) / rate), too_much)
+        changed = select(at_rest, select(less(torque, 0.0), -1.0, 1.0), 0.0)
+        sides[i] = select(wrong, select(backend.equal(agrees, 1.0), changed, sides[i]), sides[i])
+        agrees = select(wrong, 0.0, agrees)
+        mu[i] = select(less(c, torque), c, select(less(torque, -c), -c, torque))
+    return np.array(mu), np.array(sides), agrees

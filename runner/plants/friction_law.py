@@ -1,9 +1,9 @@
 """Friction laws of joints: viscous, dry with a static level, Stribeck's curve, and a sigmoid."""
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -12,10 +12,85 @@ from runner.base import portable
 from runner.base.arrays import FloatArray
 from runner.base.errors import ConfigError
 from runner.schema.values import FrictionConfig, expand
+from runner.symbolic.arm import to_scalars
+from runner.symbolic.maths import NUMPY, Backend
+from runner.symbolic.vectors import Matrix, Scalar, Vector
 
 _STEEPEST = 700.0  # exp of it is a double
 _EXPONENTS = {"exponential": 1, "gauss": 2}
 _ARRAYS = "viscous", "coulomb", "asymmetry", "stiction", "stribeck_speed", "sigmoid"
+
+
+class FrictionNumbers(NamedTuple):
+    """The numbers of the friction of n joints, as floats or as expressions; see JointFriction.
+
+    Attributes:
+        viscous: b, shape (n,).
+        coulomb: c, shape (n,).
+        asymmetry: o, shape (n,).
+        stiction: s - c, shape (n,).
+        steepness: phi_2, shape (n,).
+        odds: Odds of the sigmoid for joints that move up and down, shape (2, n).
+        slopes: Slopes of the sigmoid for joints that move up and down, shape (2, n).
+        stribeck_speed: v_s, shape (n,); None for a joint whose friction falls as soon as it moves.
+        exponent: e.
+    """
+
+    viscous: Vector
+    coulomb: Vector
+    asymmetry: Vector
+    stiction: Vector
+    steepness: Vector
+    odds: Matrix
+    slopes: Matrix
+    stribeck_speed: Sequence[Scalar | None]
+    exponent: int
+
+    def convert(self, number: Callable[[float], Scalar]) -> "FrictionNumbers":
+        """Return the numbers converted by `number`; 0, 1 and -1 stay floats."""
+        *arrays, speeds, exponent = self
+        converted = [to_scalars(speed, number) if speed else None for speed in speeds]
+        return FrictionNumbers(*(to_scalars(array, number) for array in arrays), converted, exponent)
+
+    def at(self, backend: Backend, v: Vector, held: Sequence[Scalar]) -> tuple[Vector, Vector]:
+        """Return the law that holds for a tick from its first speeds on.
+
+        The sigmoid becomes its secant through the origin, sigma(v) / v. So no part of friction can drive a joint.
+
+        Args:
+            backend: Functions over these numbers.
+            v: Speeds at the start of the tick, shape (n,), in rad/s.
+            held: Conditions that the joints are at rest, shape (n,).
+
+        Returns:
+            Torque per speed, in N m s/rad, and level of dry friction, in N m, of each joint, shapes (n,).
+        """
+        damping, level = list(self.viscous), list(self.coulomb)
+        for joint, speed in enumerate(v):
+            if self.slopes[0][joint] != 0.0:
+                damping[joint] = damping[joint] + self._secant(backend, joint, speed)
+            if self.stiction[joint] != 0.0:
+                weight = backend.select(held[joint], 1.0, self._weight(backend, joint, speed))
+                level[joint] = level[joint] + self.stiction[joint] * weight
+        return damping, level
+
+    def _weight(self, backend: Backend, joint: int, v: Scalar) -> Scalar:
+        """Return w of a joint in motion."""
+        falls = self.stribeck_speed[joint]
+        if falls is None:
+            return 0.0
+        share = backend.absolute(v) / falls
+        return backend.decay(share if self.exponent == 1 else share * share)[0]
+
+    def _secant(self, backend: Backend, joint: int, v: Scalar) -> Scalar:
+        """Return sigma(v) / v of a joint, in N m s/rad."""
+        down, y = backend.less(v, 0.0), self.steepness[joint] * backend.absolute(v)
+        slope, odds = (
+            backend.select(down, of_joint[1][joint], of_joint[0][joint]) for of_joint in (self.slopes, self.odds)
+        )
+        (left, gone), rests = backend.decay(y), backend.equal(y, 0.0)
+        share = backend.select(rests, 1.0, gone / backend.select(rests, 1.0, y))
+        return slope * share / (1.0 + odds * left)
 
 
 @dataclass(frozen=True)
@@ -70,39 +145,25 @@ class JointFriction:
         found: FloatArray = self.sigmoid[0] * self.sigmoid[1] * self.odds / (1.0 + self.odds)
         return found
 
-    def at(self, v: FloatArray, held: NDArray[np.bool_]) -> tuple[FloatArray, FloatArray]:
-        """Return the law that holds for a tick from its first speeds on.
+    @cached_property
+    def numbers(self) -> FrictionNumbers:
+        """The numbers of the law as floats."""
+        arrays = (
+            *(self.viscous, self.coulomb, self.asymmetry, self.stiction),
+            *(self.sigmoid[1], self.odds, self.slopes),
+        )
+        speeds = [speed or None for speed in self.stribeck_speed.tolist()]
+        return FrictionNumbers(*(array.tolist() for array in arrays), speeds, self.exponent)
 
-        The sigmoid becomes its secant through the origin, sigma(v) / v. So no part of friction can drive a joint.
+    def at(self, v: FloatArray, held: NDArray[np.bool_]) -> tuple[FloatArray, FloatArray]:
+        """Return the law that holds for a tick from its first speeds on; see FrictionNumbers.at.
 
         Args:
             v: Speeds at the start of the tick, shape (n,), in rad/s.
             held: True for joints at rest, shape (n,).
-
-        Returns:
-            Torque per speed, in N m s/rad, and level of dry friction, in N m, of each joint, shapes (n,).
         """
-        damping, level = self.viscous, self.coulomb
-        if self.slopes.any():
-            damping = damping + self._secant(v)
-        if self.stiction.any():
-            level = level + self.stiction * np.where(held, 1.0, self._weight(np.abs(v)))
-        return damping, level
-
-    def _weight(self, speed: FloatArray) -> FloatArray:
-        """Return w in motion, shape (n,)."""
-        falls = self.stribeck_speed > 0.0
-        share = speed / np.where(falls, self.stribeck_speed, 1.0)
-        return np.where(falls, portable.exp(-(share**self.exponent)), 0.0)
-
-    def _secant(self, v: FloatArray) -> FloatArray:
-        """Return sigma(v) / v, shape (n,), in N m s/rad."""
-        up, y = v >= 0.0, self.sigmoid[1] * np.abs(v)
-        slope = np.where(up, self.slopes[0], self.slopes[1])
-        odds = np.where(up, self.odds[0], self.odds[1])
-        share = np.where(y > 0.0, -portable.expm1(-y) / np.where(y > 0.0, y, 1.0), 1.0)
-        found: FloatArray = slope * share / (1.0 + odds * portable.exp(-y))
-        return found
+        damping, level = self.numbers.at(NUMPY, v.tolist(), held.tolist())
+        return np.array(damping), np.array(level)
 
 
 def joint_friction(key: str, config: FrictionConfig, joints: Sequence[str]) -> JointFriction:

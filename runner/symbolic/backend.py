@@ -1,6 +1,6 @@
 """Scalar functions for control laws on expressions; see runner/symbolic/maths.py."""
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from typing import Any, cast
 
 import numpy as np
@@ -11,6 +11,7 @@ from runner.symbolic.expression import (
     all_of,
     angle_of,
     both,
+    decay,
     equal,
     expression,
     floor,
@@ -50,9 +51,17 @@ class SymbolicBackend:
         """Return the condition a < b; see Backend."""
         return less(a, b)
 
+    def equal(self, a: Any, b: Any) -> Any:
+        """Return the condition a = b; see Backend."""
+        return equal(a, b)
+
     def any_of(self, *conditions: Any) -> Any:
         """Return the condition that at least one condition holds; see Backend."""
         return negated(all_of([negated(condition) for condition in conditions]))
+
+    def select(self, condition: Any, yes: Any, no: Any) -> Any:
+        """Return one of two scalars; see Backend."""
+        return select(condition, yes, no)
 
     def maximum(self, a: Any, b: Any) -> Any:
         """Return the larger one; see Backend."""
@@ -69,6 +78,10 @@ class SymbolicBackend:
     def sqrt(self, a: Any) -> Any:
         """Return the square root; see Backend."""
         return sqrt(a)
+
+    def decay(self, x: Any) -> tuple[Any, Any]:
+        """Return exp(-x) and 1 - exp(-x); see Backend."""
+        return decay(x)
 
     def solve_three(self, A: Array, b: Array, singular: str | None) -> tuple[Array, Any]:
         """Return A^-1 b and det A by Cramer's rule; a singular A, up to rounding, is a failure. See Backend."""
@@ -88,6 +101,18 @@ class SymbolicBackend:
         if b.ndim == 1:
             return np.asarray(as_array(factors.solve(b.tolist())))
         return np.asarray(as_array([factors.solve(column) for column in b.T.tolist()]).T)
+
+    def solve_chosen(self, A: Array, b: Array, chosen: Sequence[Any]) -> Array:
+        """Return A^-1 b of chosen rows: any other row of the system has only a one on the diagonal; see Backend."""
+        rows = range(len(b))
+        system = [
+            [
+                select(chosen[i], A[i, i], 1.0) if i == j else select(both(chosen[i], chosen[j]), A[i, j], 0.0)
+                for j in rows
+            ]
+            for i in rows
+        ]
+        return np.asarray(as_array(Factors(system).solve([select(chosen[i], b[i], 0.0) for i in rows])))
 
     def positive_definite(self, A: Array) -> Any:
         """Return the condition that all pivots are above 0; see Backend."""

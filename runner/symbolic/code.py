@@ -243,6 +243,13 @@ class Slots:
         self.widths[space] += count
         return first, [place(space, first + index) for index in range(count)]
 
+    def keep(self, values: Vector, parts: list[Part]) -> Vector:
+        """Add the code that writes numbers to new slots, for later parts; return the slots. Constants stay floats."""
+        first, kept = self.take(SCRATCH, sum(isinstance(value, Expression) for value in values))
+        parts.append(put(SCRATCH, first, [value for value in values if isinstance(value, Expression)]))
+        slots = iter(kept)
+        return [next(slots) if isinstance(value, Expression) else value for value in values]
+
     def number(self, value: float) -> Expression:
         """Return the next parameter, for a number that may differ between runs; see Values."""
         return self.take(PARS, 1)[1][0]

@@ -1,12 +1,13 @@
 """Scalar functions for control laws, in addition to NumPy's operators: protocol and float version."""
 
-from collections.abc import Callable
-from math import floor
+from collections.abc import Callable, Sequence
+from math import exp, expm1, floor
 from typing import Any, Protocol, TypeVar
 
 import numpy as np
 from numpy.typing import NDArray
 
+from runner.base import portable
 from runner.base.lazy_modules import lapack, pin
 
 Array = NDArray[Any]
@@ -32,8 +33,16 @@ class Backend(Protocol):
         """Return the condition a < b of two scalars."""
         ...
 
+    def equal(self, a: Scalar, b: Scalar) -> Scalar:
+        """Return the condition a = b of two scalars."""
+        ...
+
     def any_of(self, *conditions: Scalar) -> Scalar:
         """Return the condition that at least one condition holds."""
+        ...
+
+    def select(self, condition: Scalar, yes: Scalar, no: Scalar) -> Scalar:
+        """Return one of two scalars, both computed before."""
         ...
 
     def maximum(self, a: Scalar, b: Scalar) -> Scalar:
@@ -52,12 +61,20 @@ class Backend(Protocol):
         """Return the square root of a scalar."""
         ...
 
+    def decay(self, x: Scalar) -> tuple[Scalar, Scalar]:
+        """Return exp(-x) and 1 - exp(-x) of a scalar that is not negative."""
+        ...
+
     def solve_three(self, A: Array, b: Array, singular: str | None) -> tuple[Array, Scalar]:
         """Return A^-1 b and det A, with A of shape (3, 3) and b of shape (3,)."""
         ...
 
     def solve_symmetric(self, A: Array, b: Array, singular: str | None) -> Array:
         """Return A^-1 b of a positive definite A, with only its upper triangle read; b of shape (n,) or (n, k)."""
+        ...
+
+    def solve_chosen(self, A: Array, b: Array, chosen: Sequence[Scalar]) -> Array:
+        """Return A^-1 b of the rows and columns of a positive definite A that conditions choose, 0 in other rows."""
         ...
 
     def positive_definite(self, A: Array) -> Scalar:
@@ -82,8 +99,14 @@ class _NumpyBackend:
     def less(self, a: Scalar, b: Scalar) -> Scalar:
         return a < b
 
+    def equal(self, a: Scalar, b: Scalar) -> Scalar:
+        return a == b
+
     def any_of(self, *conditions: Scalar) -> Scalar:
         return any(conditions)
+
+    def select(self, condition: Scalar, yes: Scalar, no: Scalar) -> Scalar:
+        return yes if condition else no
 
     def maximum(self, a: Scalar, b: Scalar) -> Scalar:
         return max(a, b)
@@ -96,6 +119,9 @@ class _NumpyBackend:
 
     def sqrt(self, a: Scalar) -> Scalar:
         return float(np.sqrt(a))
+
+    def decay(self, x: Scalar) -> tuple[Scalar, Scalar]:
+        return exp(-x), -expm1(-x)
 
     def solve_three(self, A: Array, b: Array, singular: str | None) -> tuple[Array, Scalar]:
         lu, pivots, solution, info = lapack.dgesv(A, b)
@@ -110,6 +136,12 @@ class _NumpyBackend:
         if info and singular is not None:
             raise np.linalg.LinAlgError(singular)
         return np.asarray(solution)
+
+    def solve_chosen(self, A: Array, b: Array, chosen: Sequence[Scalar]) -> Array:
+        x, rows = np.zeros(len(b)), np.array(chosen)
+        if rows.any():
+            x[rows] = portable.solve_symmetric(A[np.ix_(rows, rows)], b[rows])
+        return x
 
     def positive_definite(self, A: Array) -> Scalar:
         return lapack.dpotrf(A)[1] == 0
