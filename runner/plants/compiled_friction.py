@@ -7,7 +7,7 @@ from runner.plants.friction_law import FrictionNumbers
 from runner.symbolic.algebra import ArmAlgebra, Factors
 from runner.symbolic.backend import SymbolicBackend
 from runner.symbolic.code import SCRATCH, STATE, Block, Part, Repeat, Slots, put
-from runner.symbolic.expression import Value, equal
+from runner.symbolic.expression import Value, equal, select
 from runner.symbolic.vectors import Vector, add, as_array, product, scale, subtract
 
 
@@ -47,8 +47,8 @@ def brake(
     mu = np.zeros(n)
     if dry:
         first, slots = at.take(SCRATCH, n + 1)
-        found, sides, agrees = pivot(backend, A, speed, level, as_array(direction))
-        search = [put(STATE, state, sides), put(SCRATCH, first, [*found, 1.0 - agrees])]
+        found, sides, agrees = pivot(backend, A, speed, as_array(level), as_array(direction))
+        search = [put(STATE, state, sides), put(SCRATCH, first, [*found, select(agrees, 0.0, 1.0)])]
         parts.append(Repeat([Block([*search[0].outputs, *search[1].outputs])], MOST_PIVOTS, until_zero=first + n))
         mu = as_array(slots[:n])
     drag = as_array(damping) * (speed - A @ mu)

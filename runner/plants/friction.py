@@ -10,7 +10,6 @@ from runner.plants.friction_law import JointFriction
 from runner.plants.plant import Plant, PlantWrapper
 from runner.robots.model import RobotModel
 from runner.symbolic.maths import NUMPY, Array, Backend, Scalar
-from runner.symbolic.vectors import Vector
 
 MOST_PIVOTS = 100  # upper limit; an arm of ten joints needs one if no joint starts or stops, else a few
 _ROUNDING = 1e-12  # relative to the acting torques
@@ -98,7 +97,9 @@ class Frictional(_Friction):
         pushed = M @ self.dq + h * (tau + self._contact_torque() - bias - self._law.asymmetry)
         columns = solve_symmetric(M + np.diag(h * damping), np.column_stack([pushed, h * np.eye(len(tau))]))
         speed, mobility = columns[:, 0], columns[:, 1:]
-        mu, self._direction = stopping_torques(mobility, speed, level, self._direction)
+        mu = np.zeros(len(tau))
+        if self._law.dry:
+            mu, self._direction = stopping_torques(mobility, speed, level, self._direction)
         friction: FloatArray = damping * (speed - mobility @ mu) + mu + self._law.asymmetry
         return friction
 
@@ -166,14 +167,14 @@ def stopping_torques(
         mu, shape (nq,), in N m; and the direction of each joint, as above.
     """
     for _ in range(MOST_PIVOTS):
-        mu, direction, agrees = pivot(NUMPY, mobility, speed, limit.tolist(), direction)
+        mu, direction, agrees = pivot(NUMPY, mobility, speed, limit, direction)
         if agrees:
             break
     return mu, direction
 
 
 def pivot(
-    backend: Backend, mobility: Array, speed: Array, limit: Vector, direction: Array
+    backend: Backend, mobility: Array, speed: Array, limit: Array, direction: Array
 ) -> tuple[Array, Array, Scalar]:
     """Return the dry friction for given directions, and the directions after the first wrong one has changed.
 
@@ -185,19 +186,17 @@ def pivot(
         direction: See stopping_torques.
 
     Returns:
-        mu within its limits, shape (n,), in N m; the directions, shape (n,); and 1 if none was wrong, else 0.
+        mu within its limits, shape (n,), in N m; the directions, shape (n,); and the condition that none was wrong.
     """
-    less, select, size, inertia = backend.less, backend.select, backend.absolute, np.diagonal(mobility).tolist()
-    sliding, sides = direction * np.array(limit), direction.tolist()
-    held = [backend.equal(side, 0.0) for side in sides]
-    stopping = backend.solve_chosen(mobility, speed - mobility @ sliding, held)
-    mu = [select(*choice) for choice in zip(held, stopping.tolist(), sliding.tolist(), strict=True)]
-    left, agrees = (speed - mobility @ np.array(mu)).tolist(), 1.0
-    for i, (at_rest, torque, c, rate) in enumerate(zip(held, mu, limit, inertia, strict=True)):
-        too_much = select(at_rest, size(torque) - c, -left[i] * sides[i] / rate)
-        wrong = less(_ROUNDING * (c + size(speed[i]) / rate), too_much)
-        changed = select(at_rest, select(less(torque, 0.0), -1.0, 1.0), 0.0)
-        sides[i] = select(wrong, select(backend.equal(agrees, 1.0), changed, sides[i]), sides[i])
-        agrees = select(wrong, 0.0, agrees)
-        mu[i] = select(less(c, torque), c, select(less(torque, -c), -c, torque))
-    return np.array(mu), np.array(sides), agrees
+    less, select, rates = backend.less, backend.select, np.diagonal(mobility)
+    held, sliding = backend.equal(direction, 0.0), direction * limit
+    mu = select(held, backend.solve_chosen(mobility, speed - mobility @ sliding, held), sliding)
+    left = speed - mobility @ mu
+    too_much = select(held, backend.absolute(mu) - limit, -left * direction / rates)
+    first, agrees = backend.first(less(_ROUNDING * (limit + backend.absolute(speed) / rates), too_much))
+
+    def change() -> Array:
+        return np.asarray(select(first, select(held, select(less(mu, 0.0), -1.0, 1.0), 0.0), direction))
+
+    direction = backend.choose(agrees, lambda: direction, change)
+    return select(less(limit, mu), limit, select(less(mu, -limit), -limit, mu)), direction, agrees

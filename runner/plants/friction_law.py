@@ -134,6 +134,11 @@ class JointFriction:
         return found
 
     @cached_property
+    def dry(self) -> bool:
+        """Whether a joint has dry friction."""
+        return bool(self.coulomb.any() or self.stiction.any())
+
+    @cached_property
     def odds(self) -> FloatArray:
         """exp(-phi_2 phi_3) for joints that move up, and its inverse for those that move down, shape (2, n)."""
         found: FloatArray = portable.exp(np.array([[-1.0], [1.0]]) * self.sigmoid[1] * self.sigmoid[2])

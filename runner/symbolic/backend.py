@@ -1,6 +1,6 @@
 """Scalar functions for control laws on expressions; see runner/symbolic/maths.py."""
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable
 from typing import Any, cast
 
 import numpy as np
@@ -24,6 +24,10 @@ from runner.symbolic.maths import Array, Chosen
 from runner.symbolic.vectors import as_array, cross, dot, scale
 
 _STEPS = 6  # of Laguerre's method, with cubic convergence
+# Of scalars, and of arrays entry by entry.
+_LESS, _EQUAL, _SELECT, _ABSOLUTE = (
+    np.frompyfunc(function, count, 1) for function, count in ((less, 2), (equal, 2), (select, 3), (absolute, 1))
+)
 
 
 class SymbolicBackend:
@@ -49,19 +53,27 @@ class SymbolicBackend:
 
     def less(self, a: Any, b: Any) -> Any:
         """Return the condition a < b; see Backend."""
-        return less(a, b)
+        return _LESS(a, b)
 
     def equal(self, a: Any, b: Any) -> Any:
         """Return the condition a = b; see Backend."""
-        return equal(a, b)
+        return _EQUAL(a, b)
 
     def any_of(self, *conditions: Any) -> Any:
         """Return the condition that at least one condition holds; see Backend."""
         return negated(all_of([negated(condition) for condition in conditions]))
 
+    def first(self, conditions: Array) -> tuple[Array, Any]:
+        """Return which condition is the first that holds, and whether none does; see Backend."""
+        first, none = [conditions[0]], negated(conditions[0])
+        for condition in conditions[1:]:
+            first.append(both(none, condition))
+            none = both(none, negated(condition))
+        return np.asarray(as_array(first)), none
+
     def select(self, condition: Any, yes: Any, no: Any) -> Any:
         """Return one of two scalars; see Backend."""
-        return select(condition, yes, no)
+        return _SELECT(condition, yes, no)
 
     def maximum(self, a: Any, b: Any) -> Any:
         """Return the larger one; see Backend."""
@@ -73,7 +85,7 @@ class SymbolicBackend:
 
     def absolute(self, a: Any) -> Any:
         """Return the absolute value of a scalar; see Backend."""
-        return absolute(a)
+        return _ABSOLUTE(a)
 
     def sqrt(self, a: Any) -> Any:
         """Return the square root; see Backend."""
@@ -102,7 +114,7 @@ class SymbolicBackend:
             return np.asarray(as_array(factors.solve(b.tolist())))
         return np.asarray(as_array([factors.solve(column) for column in b.T.tolist()]).T)
 
-    def solve_chosen(self, A: Array, b: Array, chosen: Sequence[Any]) -> Array:
+    def solve_chosen(self, A: Array, b: Array, chosen: Array) -> Array:
         """Return A^-1 b of chosen rows: any other row of the system has only a one on the diagonal; see Backend."""
         rows = range(len(b))
         system = [

@@ -1,6 +1,6 @@
 """Scalar functions for control laws, in addition to NumPy's operators: protocol and float version."""
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable
 from math import exp, expm1, floor
 from typing import Any, Protocol, TypeVar
 
@@ -30,19 +30,23 @@ class Backend(Protocol):
         ...
 
     def less(self, a: Scalar, b: Scalar) -> Scalar:
-        """Return the condition a < b of two scalars."""
+        """Return the condition a < b of two scalars, or of two arrays entry by entry."""
         ...
 
     def equal(self, a: Scalar, b: Scalar) -> Scalar:
-        """Return the condition a = b of two scalars."""
+        """Return the condition a = b of two scalars, or of two arrays entry by entry."""
         ...
 
     def any_of(self, *conditions: Scalar) -> Scalar:
         """Return the condition that at least one condition holds."""
         ...
 
+    def first(self, conditions: Array) -> tuple[Array, Scalar]:
+        """Return for each condition whether it is the first that holds, shape (n,), and the condition that none is."""
+        ...
+
     def select(self, condition: Scalar, yes: Scalar, no: Scalar) -> Scalar:
-        """Return one of two scalars, both computed before."""
+        """Return one of two scalars, or of the entries of two arrays by conditions; both are computed before."""
         ...
 
     def maximum(self, a: Scalar, b: Scalar) -> Scalar:
@@ -54,7 +58,7 @@ class Backend(Protocol):
         ...
 
     def absolute(self, a: Scalar) -> Scalar:
-        """Return the absolute value of a scalar."""
+        """Return the absolute value of a scalar, or of the entries of an array."""
         ...
 
     def sqrt(self, a: Scalar) -> Scalar:
@@ -73,8 +77,8 @@ class Backend(Protocol):
         """Return A^-1 b of a positive definite A, with only its upper triangle read; b of shape (n,) or (n, k)."""
         ...
 
-    def solve_chosen(self, A: Array, b: Array, chosen: Sequence[Scalar]) -> Array:
-        """Return A^-1 b of the rows and columns of a positive definite A that conditions choose, 0 in other rows."""
+    def solve_chosen(self, A: Array, b: Array, chosen: Array) -> Array:
+        """Return A^-1 b of the rows and columns of a positive definite A that conditions choose; 0 in other rows."""
         ...
 
     def positive_definite(self, A: Array) -> Scalar:
@@ -106,7 +110,14 @@ class _NumpyBackend:
         return any(conditions)
 
     def select(self, condition: Scalar, yes: Scalar, no: Scalar) -> Scalar:
+        if isinstance(condition, np.ndarray):
+            return np.where(condition, yes, no)
         return yes if condition else no
+
+    def first(self, conditions: Array) -> tuple[Array, Scalar]:
+        first, at = np.zeros(len(conditions), dtype=bool), conditions.argmax()
+        first[at] = conditions[at]
+        return first, not conditions[at]
 
     def maximum(self, a: Scalar, b: Scalar) -> Scalar:
         return max(a, b)
@@ -137,10 +148,10 @@ class _NumpyBackend:
             raise np.linalg.LinAlgError(singular)
         return np.asarray(solution)
 
-    def solve_chosen(self, A: Array, b: Array, chosen: Sequence[Scalar]) -> Array:
-        x, rows = np.zeros(len(b)), np.array(chosen)
-        if rows.any():
-            x[rows] = portable.solve_symmetric(A[np.ix_(rows, rows)], b[rows])
+    def solve_chosen(self, A: Array, b: Array, chosen: Array) -> Array:
+        x = np.zeros(len(b))
+        if chosen.any():
+            x[chosen] = portable.solve_symmetric(A[np.ix_(chosen, chosen)], b[chosen])
         return x
 
     def positive_definite(self, A: Array) -> Scalar:
