@@ -43,7 +43,7 @@ _TABLE = """
     plants: __init__=plants.__init__ bullet bullet_engine bullet_links bullet_servers compiled_bullet compiled_friction
         compiled_motion=compiled.motion computation=plants.computation decoupled flexibility=plants.flexibility
         flexible_config flexible_joints=plants.flexible_joints friction friction_law kinematic motor_limits mujoco
-        plant=plants.plant rk4 rk4_flexible_links servo stepped_bullet whole_motion wrappers=touched
+        plant=plants.plant rk4 rk4_flexible_links runge_kutta servo stepped_bullet whole_motion wrappers=touched
     plugins: features guard metric_units registry
     robots: __init__=robots.__init__ canonical description drawn elements file_extensions inertials
         inverse_kinematics joint_dynamics mismatch mjcf mjcf_files mjcf_motors mjcf_urdf model mounting
