@@ -48,7 +48,7 @@ def brake(
     if dry:
         first, slots = at.take(SCRATCH, n + 1)
         found, sides, agrees = pivot(backend, A, speed, as_array(level), as_array(direction))
-        search = [put(STATE, state, sides), put(SCRATCH, first, [*found, select(agrees, 0.0, 1.0)])]
+        search = [put(STATE, state, sides.tolist()), put(SCRATCH, first, [*found, select(agrees, 0.0, 1.0)])]
         parts.append(Repeat([Block([*search[0].outputs, *search[1].outputs])], MOST_PIVOTS, until_zero=first + n))
         mu = as_array(slots[:n])
     drag = as_array(damping) * (speed - A @ mu)

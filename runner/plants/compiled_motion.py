@@ -78,7 +78,7 @@ class Mover:
 
         def slope(x: Array) -> Array:
             speeds = x[n:].tolist()
-            return as_array([*speeds, *self.acceleration(x[:n].tolist(), speeds, acting)])
+            return np.array([*speeds, *self.acceleration(x[:n].tolist(), speeds, acting)], dtype=object)
 
         x, row = as_array([*q, *v]), places(TABLE, 0, 3)
         at, sums = advance_stage(slope, x, h, row, as_array(scratch[: 2 * n]), [as_array(one), as_array(two)])

@@ -48,9 +48,9 @@ class FrictionNumbers(NamedTuple):
 
     def convert(self, number: Callable[[float], Scalar]) -> "FrictionNumbers":
         """Return the numbers converted by `number`; 0, 1 and -1 stay floats."""
-        *arrays, speeds, exponent = self
-        converted = [to_scalars(speed, number) if speed else None for speed in speeds]
-        return FrictionNumbers(*(to_scalars(array, number) for array in arrays), converted, exponent)
+        arrays = {name: to_scalars(getattr(self, name), number) for name in self._fields[:-2]}
+        speeds = [to_scalars(speed, number) if speed else None for speed in self.stribeck_speed]
+        return self._replace(**arrays, stribeck_speed=speeds)
 
     def at(self, backend: Backend, v: Vector, held: Sequence[Scalar]) -> tuple[Vector, Vector]:
         """Return the law that holds for a tick from its first speeds on.
@@ -153,12 +153,17 @@ class JointFriction:
     @cached_property
     def numbers(self) -> FrictionNumbers:
         """The numbers of the law as floats."""
-        arrays = (
-            *(self.viscous, self.coulomb, self.asymmetry, self.stiction),
-            *(self.sigmoid[1], self.odds, self.slopes),
+        return FrictionNumbers(
+            viscous=self.viscous.tolist(),
+            coulomb=self.coulomb.tolist(),
+            asymmetry=self.asymmetry.tolist(),
+            stiction=self.stiction.tolist(),
+            steepness=self.sigmoid[1].tolist(),
+            odds=self.odds.tolist(),
+            slopes=self.slopes.tolist(),
+            stribeck_speed=[speed or None for speed in self.stribeck_speed.tolist()],
+            exponent=self.exponent,
         )
-        speeds = [speed or None for speed in self.stribeck_speed.tolist()]
-        return FrictionNumbers(*(array.tolist() for array in arrays), speeds, self.exponent)
 
     def at(self, v: FloatArray, held: NDArray[np.bool_]) -> tuple[FloatArray, FloatArray]:
         """Return the law that holds for a tick from its first speeds on; see FrictionNumbers.at.

@@ -25,9 +25,10 @@ from runner.symbolic.vectors import as_array, cross, dot, scale
 
 _STEPS = 6  # of Laguerre's method, with cubic convergence
 # Of scalars, and of arrays entry by entry.
-_LESS, _EQUAL, _SELECT, _ABSOLUTE = (
-    np.frompyfunc(function, count, 1) for function, count in ((less, 2), (equal, 2), (select, 3), (absolute, 1))
-)
+_LESS: Any = np.frompyfunc(less, 2, 1)
+_EQUAL: Any = np.frompyfunc(equal, 2, 1)
+_SELECT: Any = np.frompyfunc(select, 3, 1)
+_ABSOLUTE: Any = np.frompyfunc(absolute, 1, 1)
 
 
 class SymbolicBackend:
