@@ -9,7 +9,7 @@ from runner.base.errors import RunnerError
 from runner.base.limits import Limit
 from runner.recordings import bags
 from runner.recordings.columns_map import ColumnsMap, Factor, Signal
-from runner.recordings.files import is_bag, read_table
+from runner.recordings.files import is_bag, read_log
 from runner.recordings.recording import read_recording
 
 WANTED = ["stamp", "a.position", "b.effort"]
@@ -17,7 +17,7 @@ COUNT, START = 60, 1_700_000_000_123_456_789  # ns
 
 
 def read_columns(path, topic, wanted):
-    return read_table(path, wanted, topic).of(wanted, "stamp").columns
+    return read_log(path, wanted, topic).of(wanted, "stamp").columns
 
 
 @pytest.fixture
