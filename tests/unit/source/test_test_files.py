@@ -33,8 +33,6 @@ MODULES = [
     if path.name != "__init__.py"
 ]
 SHARED = {
-    "base/parquet_tables": "unit/base/test_tables.py",
-    "recordings/lerobot": "contract/doctor/test_log_doctor.py",
     "calibration/procedure": "physics/calibration/test_procedures.py",
     "calibration/weighing": "physics/calibration/test_procedures.py",
     "config/composed": "contract/config/test_compose.py",
