@@ -81,7 +81,6 @@ SHARED = {
     "robots/mjcf_motors": "physics/robots/test_mjcf_joints.py",
     "robots/mjcf_urdf": "physics/robots/test_mjcf.py",
     "sensing/endpoint": "physics/simulation/test_endpoint_sensing.py",
-    "schema/bound": "contract/config/test_judgement.py",
     "schema/units": "contract/config/test_units_of_keys.py",
     "plants/bullet_engine": "physics/plants/test_bullet.py",
     "plants/flexibility": "physics/plants/test_flexible_joints.py",
