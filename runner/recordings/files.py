@@ -19,13 +19,6 @@ def is_log_folder(path: Path) -> bool:
     return path.is_dir() and ((path / INFO).is_file() or (path / "metadata.yaml").is_file() or bool(bag_files(path)))
 
 
-def is_bag(path: Path) -> bool:
-    """Return whether a recording is a ROS bag, a file or a folder."""
-    if path.is_dir():
-        return not (path / INFO).is_file()
-    return path.is_file() and bool(bag_files(path))
-
-
 def read_log(
     path: Path, wanted: Sequence[str] | None = None, topic: str | None = None, episode: int | None = None
 ) -> Table:

@@ -24,11 +24,6 @@ from runner.symbolic.maths import Array, Chosen
 from runner.symbolic.vectors import as_array, cross, dot, scale
 
 _STEPS = 6  # of Laguerre's method, with cubic convergence
-# Of scalars, and of arrays entry by entry.
-_LESS: Any = np.frompyfunc(less, 2, 1)
-_EQUAL: Any = np.frompyfunc(equal, 2, 1)
-_SELECT: Any = np.frompyfunc(select, 3, 1)
-_ABSOLUTE: Any = np.frompyfunc(absolute, 1, 1)
 
 
 class SymbolicBackend:
@@ -38,6 +33,13 @@ class SymbolicBackend:
         errors: Messages of the possible failures, in the order of the numbers in `fault`.
         fault: Number of the first failure, counted from 1; 0 without a failure.
     """
+
+    # Of scalars, and of arrays entry by entry.
+    less: Any = staticmethod(np.frompyfunc(less, 2, 1))
+    equal: Any = staticmethod(np.frompyfunc(equal, 2, 1))
+    select: Any = staticmethod(np.frompyfunc(select, 3, 1))
+    absolute: Any = staticmethod(np.frompyfunc(absolute, 1, 1))
+    floor, sqrt, decay = staticmethod(floor), staticmethod(sqrt), staticmethod(decay)
 
     def __init__(self) -> None:
         self.errors: list[str] = []
@@ -52,14 +54,6 @@ class SymbolicBackend:
             return cast(Chosen, tuple(_select(condition, *pair) for pair in zip(chosen, other, strict=True)))
         return cast(Chosen, _select(condition, chosen, other))
 
-    def less(self, a: Any, b: Any) -> Any:
-        """Return the condition a < b; see Backend."""
-        return _LESS(a, b)
-
-    def equal(self, a: Any, b: Any) -> Any:
-        """Return the condition a = b; see Backend."""
-        return _EQUAL(a, b)
-
     def any_of(self, *conditions: Any) -> Any:
         """Return the condition that at least one condition holds; see Backend."""
         return negated(all_of([negated(condition) for condition in conditions]))
@@ -72,29 +66,9 @@ class SymbolicBackend:
             none = both(none, negated(condition))
         return np.asarray(as_array(first)), none
 
-    def select(self, condition: Any, yes: Any, no: Any) -> Any:
-        """Return one of two scalars; see Backend."""
-        return _SELECT(condition, yes, no)
-
     def maximum(self, a: Any, b: Any) -> Any:
         """Return the larger one; see Backend."""
         return select(less(b, a), a, b)
-
-    def floor(self, a: Any) -> Any:
-        """Return the largest integer that is not greater; see Backend."""
-        return floor(a)
-
-    def absolute(self, a: Any) -> Any:
-        """Return the absolute value of a scalar; see Backend."""
-        return _ABSOLUTE(a)
-
-    def sqrt(self, a: Any) -> Any:
-        """Return the square root; see Backend."""
-        return sqrt(a)
-
-    def decay(self, x: Any) -> tuple[Any, Any]:
-        """Return exp(-x) and 1 - exp(-x); see Backend."""
-        return decay(x)
 
     def solve_three(self, A: Array, b: Array, singular: str | None) -> tuple[Array, Any]:
         """Return A^-1 b and det A by Cramer's rule; a singular A, up to rounding, is a failure. See Backend."""

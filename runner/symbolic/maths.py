@@ -1,5 +1,6 @@
 """Scalar functions for control laws, in addition to NumPy's operators: protocol and float version."""
 
+import operator
 from collections.abc import Callable
 from math import exp, expm1, floor
 from typing import Any, Protocol, TypeVar
@@ -97,14 +98,11 @@ class Backend(Protocol):
 class _NumpyBackend:
     """The functions on floats; see Backend."""
 
+    less, equal = staticmethod(operator.lt), staticmethod(operator.eq)
+    maximum, absolute = staticmethod(max), staticmethod(abs)
+
     def choose(self, condition: Scalar, yes: Callable[[], Chosen], no: Callable[[], Chosen]) -> Chosen:
         return yes() if condition else no()
-
-    def less(self, a: Scalar, b: Scalar) -> Scalar:
-        return a < b
-
-    def equal(self, a: Scalar, b: Scalar) -> Scalar:
-        return a == b
 
     def any_of(self, *conditions: Scalar) -> Scalar:
         return any(conditions)
@@ -119,14 +117,8 @@ class _NumpyBackend:
         first[at] = conditions[at]
         return first, not conditions[at]
 
-    def maximum(self, a: Scalar, b: Scalar) -> Scalar:
-        return max(a, b)
-
     def floor(self, a: Scalar) -> Scalar:
         return float(floor(a))
-
-    def absolute(self, a: Scalar) -> Scalar:
-        return abs(a)
 
     def sqrt(self, a: Scalar) -> Scalar:
         return float(np.sqrt(a))
