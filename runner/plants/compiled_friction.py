@@ -3,7 +3,7 @@
 import numpy as np
 
 from runner.plants.friction import MOST_PIVOTS, pivot
-from runner.plants.friction_law import FrictionNumbers
+from runner.plants.friction_law import JointFriction
 from runner.symbolic.algebra import ArmAlgebra, Factors
 from runner.symbolic.backend import SymbolicBackend
 from runner.symbolic.code import SCRATCH, STATE, Block, Part, Repeat, Slots, put
@@ -13,7 +13,7 @@ from runner.symbolic.vectors import Vector, add, as_array, product, scale, subtr
 
 def brake(
     algebra: ArmAlgebra,
-    law: FrictionNumbers,
+    law: JointFriction,
     motion: tuple[Vector, Vector],
     acting: Vector,
     h: Value,
@@ -32,8 +32,7 @@ def brake(
         parts: Code before this one; the function adds to it.
     """
     (q, v), n, backend = motion, len(acting), SymbolicBackend()
-    dry = any(value != 0.0 for value in [*law.coulomb, *law.stiction])
-    state, direction = at.take(STATE, n if dry else 0)
+    state, direction = at.take(STATE, n if law.dry else 0)
     damping, level = law.at(backend, v, [equal(side, 0.0) for side in direction])
     kept = at.keep([*damping, *level], parts)
     damping, level = kept[:n], kept[n:]
@@ -45,7 +44,7 @@ def brake(
     kept = at.keep([*factors.solve(pushed), *(columns[j][i] for i in range(n) for j in range(n))], parts)
     speed, A = as_array(kept[:n]), as_array(kept[n:]).reshape(n, n)
     mu = np.zeros(n)
-    if dry:
+    if law.dry:
         first, slots = at.take(SCRATCH, n + 1)
         found, sides, agrees = pivot(backend, A, speed, as_array(level), as_array(direction))
         search = [put(STATE, state, sides.tolist()), put(SCRATCH, first, [*found, select(agrees, 0.0, 1.0)])]

@@ -35,7 +35,7 @@ class _Friction(PlantWrapper):
 
     def __init__(self, plant: Plant, law: JointFriction, tick: float) -> None:
         super().__init__(plant)
-        self._law, self._tick = law, tick
+        self._law, self._tick, self._asymmetry = law, tick, np.array(law.asymmetry)
         self._friction = np.zeros(len(plant.q))
         self._direction = np.zeros(len(plant.q))
         """0 for a joint that friction held in the last tick, 1 or -1 for one that moved up or down."""
@@ -54,6 +54,12 @@ class _Friction(PlantWrapper):
         """Hold the torques minus friction for one tick; see Plant."""
         self._friction = self._find_friction(tau)
         self.plant.advance(tau - self._friction)
+
+    @staticmethod
+    def _law_of_tick(law: JointFriction, v: FloatArray, direction: FloatArray) -> tuple[FloatArray, FloatArray]:
+        """Return a law for a tick, as arrays; see JointFriction.at."""
+        damping, level = law.at(NUMPY, v.tolist(), (direction == 0.0).tolist())
+        return np.array(damping), np.array(level)
 
     def _find_friction(self, tau: FloatArray) -> FloatArray:
         """Return the friction torques under motor torques, shapes (nq,), in N m."""
@@ -82,6 +88,7 @@ class Frictional(_Friction):
     def __init__(self, plant: Plant, model: RobotModel, law: JointFriction, tick: float) -> None:
         super().__init__(plant, law, tick)
         self._model, self._data = model.separate()
+        self._dry = law.dry
 
     def set_gravity(self, gravity: FloatArray) -> None:
         """Set the gravity vector; see Plant."""
@@ -93,14 +100,14 @@ class Frictional(_Friction):
         bias = pin.nonLinearEffects(model, data, self.q, self.dq).copy()
         M = np.triu(pin.crba(model, data, self.q))  # crba fills the upper triangle only
         M += np.triu(M, 1).T
-        damping, level = self._law.at(self.dq, self._direction == 0.0)
-        pushed = M @ self.dq + h * (tau + self._contact_torque() - bias - self._law.asymmetry)
+        damping, level = self._law_of_tick(self._law, self.dq, self._direction)
+        pushed = M @ self.dq + h * (tau + self._contact_torque() - bias - self._asymmetry)
         columns = solve_symmetric(M + np.diag(h * damping), np.column_stack([pushed, h * np.eye(len(tau))]))
         speed, mobility = columns[:, 0], columns[:, 1:]
         mu = np.zeros(len(tau))
-        if self._law.dry:
+        if self._dry:
             mu, self._direction = stopping_torques(mobility, speed, level, self._direction)
-        friction: FloatArray = damping * (speed - mobility @ mu) + mu + self._law.asymmetry
+        friction: FloatArray = damping * (speed - mobility @ mu) + mu + self._asymmetry
         return friction
 
     def _contact_torque(self) -> FloatArray:
@@ -134,8 +141,8 @@ class MotorFriction(_Friction):
 
     def _find_friction(self, tau: FloatArray) -> FloatArray:
         plant, h, on = self._springs, self._tick, self._springs.flexibility.flexible
-        B, o = plant.flexibility.motors[on], self._own.asymmetry
-        b, level = self._own.at(plant.dtheta[on], self._direction[on] == 0.0)
+        B, o = plant.flexibility.motors[on], self._asymmetry[on]
+        b, level = self._law_of_tick(self._own, plant.dtheta[on], self._direction[on])
         free = (B * plant.dtheta[on] + h * ((tau - plant.spring_torque())[on] - o)) / (B + h * b)
         stopping = free * (B + h * b) / h
         mu = np.clip(stopping, -level, level)

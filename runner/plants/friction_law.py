@@ -1,8 +1,6 @@
 """Friction laws of joints: viscous, dry with a static level, Stribeck's curve, and a sigmoid."""
 
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass, replace
-from functools import cached_property
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -13,27 +11,35 @@ from runner.base.arrays import FloatArray
 from runner.base.errors import ConfigError
 from runner.schema.values import FrictionConfig, expand
 from runner.symbolic.arm import to_scalars
-from runner.symbolic.maths import NUMPY, Backend
+from runner.symbolic.maths import Backend
 from runner.symbolic.vectors import Matrix, Scalar, Vector
 
 _STEEPEST = 700.0  # exp of it is a double
 _EXPONENTS = {"exponential": 1, "gauss": 2}
-_ARRAYS = "viscous", "coulomb", "asymmetry", "stiction", "stribeck_speed", "sigmoid"
 
 
-class FrictionNumbers(NamedTuple):
-    """The numbers of the friction of n joints, as floats or as expressions; see JointFriction.
+class JointFriction(NamedTuple):
+    r"""Friction torques of n joints against their speeds v.
+
+    .. math:: \tau_f = -b v - \sigma(v) - \mu, \quad \mu \in o + [c + (s - c) w(v)] \, \mathrm{sgn}(v), \qquad
+        w(v) = e^{-(|v| / v_s)^e}, \quad
+        \sigma(v) = \frac{\phi_1}{1 + e^{-\phi_2 (v + \phi_3)}} - \frac{\phi_1}{1 + e^{-\phi_2 \phi_3}}
+
+    At rest sgn is any number of [-1, 1] and w is 1. w is the curve of Armstrong-Helouvry, Dupont and Canudas de Wit
+    (Automatica 30(7), 1994), sigma that of Gaz et al. (IEEE Robotics and Automation Letters 4(4), 2019).
+
+    The numbers are floats, or expressions for a program.
 
     Attributes:
-        viscous: b, shape (n,).
-        coulomb: c, shape (n,).
-        asymmetry: o, shape (n,).
-        stiction: s - c, shape (n,).
-        steepness: phi_2, shape (n,).
-        odds: Odds of the sigmoid for joints that move up and down, shape (2, n).
-        slopes: Slopes of the sigmoid for joints that move up and down, shape (2, n).
-        stribeck_speed: v_s, shape (n,); None for a joint whose friction falls as soon as it moves.
-        exponent: e.
+        viscous: b, shape (n,), in N m s/rad.
+        coulomb: c, shape (n,), in N m.
+        asymmetry: o, shape (n,), in N m, at most c in magnitude.
+        stiction: s - c, shape (n,), in N m; s is the static level.
+        steepness: phi_2, shape (n,), in s/rad.
+        odds: exp(-phi_2 phi_3) for joints that move up, and its inverse for those that move down, shape (2, n).
+        slopes: phi_1 phi_2 odds / (1 + odds), shape (2, n), in N m s/rad.
+        stribeck_speed: v_s, shape (n,), in rad/s; None if w is 0 in motion.
+        exponent: e, 1 or 2.
     """
 
     viscous: Vector
@@ -46,7 +52,23 @@ class FrictionNumbers(NamedTuple):
     stribeck_speed: Sequence[Scalar | None]
     exponent: int
 
-    def convert(self, number: Callable[[float], Scalar]) -> "FrictionNumbers":
+    @property
+    def acts(self) -> NDArray[np.bool_]:
+        """True for each joint with friction, shape (n,)."""
+        found: NDArray[np.bool_] = np.any(np.array([*self[:2], self.stiction, self.slopes[0]]) > 0.0, axis=0)
+        return found
+
+    @property
+    def dry(self) -> bool:
+        """Whether a joint has dry friction."""
+        return any(value != 0.0 for value in [*self.coulomb, *self.stiction])
+
+    def of(self, joints: slice | NDArray[np.bool_]) -> "JointFriction":
+        """Return the friction of some of the joints."""
+        parts = (np.array(part, dtype=object)[..., joints].tolist() for part in self[:-1])
+        return JointFriction._make([*parts, self.exponent])
+
+    def convert(self, number: Callable[[float], Scalar]) -> "JointFriction":
         """Return the numbers converted by `number`; 0, 1 and -1 stay floats."""
         arrays = {name: to_scalars(getattr(self, name), number) for name in self._fields[:-2]}
         speeds = [to_scalars(speed, number) if speed else None for speed in self.stribeck_speed]
@@ -93,89 +115,6 @@ class FrictionNumbers(NamedTuple):
         return slope * share / (1.0 + odds * left)
 
 
-@dataclass(frozen=True)
-class JointFriction:
-    r"""Friction torques of n joints against their speeds v.
-
-    .. math:: \tau_f = -b v - \sigma(v) - \mu, \quad \mu \in o + [c + (s - c) w(v)] \, \mathrm{sgn}(v), \qquad
-        w(v) = e^{-(|v| / v_s)^e}, \quad
-        \sigma(v) = \frac{\phi_1}{1 + e^{-\phi_2 (v + \phi_3)}} - \frac{\phi_1}{1 + e^{-\phi_2 \phi_3}}
-
-    At rest sgn is any number of [-1, 1] and w is 1. w is the curve of Armstrong-Helouvry, Dupont and Canudas de Wit
-    (Automatica 30(7), 1994), sigma that of Gaz et al. (IEEE Robotics and Automation Letters 4(4), 2019).
-
-    Attributes:
-        viscous: b, shape (n,), in N m s/rad.
-        coulomb: c, shape (n,), in N m.
-        asymmetry: o, shape (n,), in N m, at most c in magnitude.
-        stiction: s - c, shape (n,), in N m; s is the static level.
-        stribeck_speed: v_s, shape (n,), in rad/s; 0 if w is 0 in motion.
-        sigmoid: phi_1, phi_2 and phi_3, shape (3, n), in N m, s/rad and rad/s.
-        exponent: e, 1 or 2.
-    """
-
-    viscous: FloatArray
-    coulomb: FloatArray
-    asymmetry: FloatArray
-    stiction: FloatArray
-    stribeck_speed: FloatArray
-    sigmoid: FloatArray
-    exponent: int
-
-    def of(self, joints: slice | NDArray[np.bool_]) -> "JointFriction":
-        """Return the friction of some of the joints."""
-        return replace(self, **{name: getattr(self, name)[..., joints] for name in _ARRAYS})
-
-    @cached_property
-    def acts(self) -> NDArray[np.bool_]:
-        """True for each joint with friction, shape (n,)."""
-        parts = self.viscous, self.coulomb, self.stiction, self.sigmoid[0] * self.sigmoid[1]
-        found: NDArray[np.bool_] = np.any(np.array(parts) > 0.0, axis=0)
-        return found
-
-    @cached_property
-    def dry(self) -> bool:
-        """Whether a joint has dry friction."""
-        return bool(self.coulomb.any() or self.stiction.any())
-
-    @cached_property
-    def odds(self) -> FloatArray:
-        """exp(-phi_2 phi_3) for joints that move up, and its inverse for those that move down, shape (2, n)."""
-        found: FloatArray = portable.exp(np.array([[-1.0], [1.0]]) * self.sigmoid[1] * self.sigmoid[2])
-        return found
-
-    @cached_property
-    def slopes(self) -> FloatArray:
-        """phi_1 phi_2 odds / (1 + odds) of the sigmoid, shape (2, n), in N m s/rad."""
-        found: FloatArray = self.sigmoid[0] * self.sigmoid[1] * self.odds / (1.0 + self.odds)
-        return found
-
-    @cached_property
-    def numbers(self) -> FrictionNumbers:
-        """The numbers of the law as floats."""
-        return FrictionNumbers(
-            viscous=self.viscous.tolist(),
-            coulomb=self.coulomb.tolist(),
-            asymmetry=self.asymmetry.tolist(),
-            stiction=self.stiction.tolist(),
-            steepness=self.sigmoid[1].tolist(),
-            odds=self.odds.tolist(),
-            slopes=self.slopes.tolist(),
-            stribeck_speed=[speed or None for speed in self.stribeck_speed.tolist()],
-            exponent=self.exponent,
-        )
-
-    def at(self, v: FloatArray, held: NDArray[np.bool_]) -> tuple[FloatArray, FloatArray]:
-        """Return the law that holds for a tick from its first speeds on; see FrictionNumbers.at.
-
-        Args:
-            v: Speeds at the start of the tick, shape (n,), in rad/s.
-            held: True for joints at rest, shape (n,).
-        """
-        damping, level = self.numbers.at(NUMPY, v.tolist(), held.tolist())
-        return np.array(damping), np.array(level)
-
-
 def joint_friction(key: str, config: FrictionConfig, joints: Sequence[str]) -> JointFriction:
     """Return the friction of each joint.
 
@@ -216,7 +155,15 @@ def joint_friction(key: str, config: FrictionConfig, joints: Sequence[str]) -> J
     ]
     if problems:
         raise ConfigError(problems)
-    viscous, speeds = array("viscous", config.viscous), array("stribeck_speed", speed)
+    odds = portable.exp(np.array([[-1.0], [1.0]]) * sigmoid[1] * sigmoid[2])
     return JointFriction(
-        viscous, coulomb, asymmetry, static - coulomb, speeds, sigmoid, _EXPONENTS[config.stribeck_curve]
+        viscous=array("viscous", config.viscous).tolist(),
+        coulomb=coulomb.tolist(),
+        asymmetry=asymmetry.tolist(),
+        stiction=(static - coulomb).tolist(),
+        steepness=sigmoid[1].tolist(),
+        odds=odds.tolist(),
+        slopes=(sigmoid[0] * sigmoid[1] * odds / (1.0 + odds)).tolist(),
+        stribeck_speed=[value or None for value in array("stribeck_speed", speed).tolist()],
+        exponent=_EXPONENTS[config.stribeck_curve],
     )

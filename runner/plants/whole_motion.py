@@ -7,7 +7,7 @@ from runner.plants.compiled_bullet import bullet_scalars, expressed_steps
 from runner.plants.compiled_friction import brake
 from runner.plants.compiled_motion import Mover
 from runner.plants.decoupled import Motion
-from runner.plants.friction_law import FrictionNumbers
+from runner.plants.friction_law import JointFriction
 from runner.robots.robot import StageBase
 from runner.symbolic.algebra import ArmAlgebra
 from runner.symbolic.arm import ArmConstants, constants_of
@@ -28,7 +28,7 @@ class ArmScalars(NamedTuple):
     """
 
     constants: ArmConstants
-    friction: FrictionNumbers
+    friction: JointFriction
     base: ArmConstants | None
 
 
@@ -76,7 +76,7 @@ def motion_scalars(motion: Motion, step: float, tick: float, number: Callable[[f
         elif index:
             base = constants_of(robot.model, number, [0.0] * 3, str(robot.stages[index].base_frame))
         constants = constants_of(arm.model, number, own)
-        arms.append(ArmScalars(constants, arm.friction.numbers.convert(number), base))
+        arms.append(ArmScalars(constants, arm.friction.convert(number), base))
     return MotionScalars(number(step), number(tick), gravity, tuple(arms))
 
 

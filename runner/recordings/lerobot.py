@@ -85,7 +85,7 @@ def _read_episode(path: Path, files: Sequence[Path], episode: int | None, names:
             places[int(number)] = file
     chosen, form = _chosen(path, lengths, episode)
     table = open_columns(places[chosen])
-    columns, others = number_columns(table.filter(_equal(table[EPISODE], chosen)), names)
+    columns, others = number_columns(table.filter(table[EPISODE].to_numpy() == chosen), names)
     return Table(path, f"LeRobot data set, {form}", columns, others=others)
 
 
@@ -98,12 +98,6 @@ def _chosen(path: Path, lengths: Mapping[int, int], episode: int | None) -> tupl
         raise TableError(path, f"has no episode {chosen}. Allowed: {min(lengths)} to {max(lengths)}.")
     longest = f", the longest of {min(lengths)} to {max(lengths)}" if episode is None and len(lengths) > 1 else ""
     return chosen, f"episode {chosen}{longest}"
-
-
-def _equal(column: Any, value: int) -> Any:
-    import pyarrow.compute
-
-    return pyarrow.compute.equal(column, value)
 
 
 def calibration_of(path: Path) -> dict[str, Mapping[str, float]]:

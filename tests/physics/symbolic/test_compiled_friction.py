@@ -2,7 +2,7 @@
 
 import numpy as np
 import pytest
-from support.friction import friction_law
+from support.friction import friction_law, law_of_tick
 from support.programs import computed
 
 from runner.plants.friction import pivot
@@ -37,11 +37,11 @@ def test_a_program_takes_the_law_for_a_tick_from_the_same_text(friction, places)
 
     def express(rows):
         held = [equal(value, 1.0) for value in rows[3:]]
-        damping, level = law.numbers.at(SymbolicBackend(), rows[:3], held)
+        damping, level = law.at(SymbolicBackend(), rows[:3], held)
         return [*damping, *level]
 
     found = computed(f"law {friction}", express, given)
-    theirs = np.array([np.concatenate(law.at(row[:3], row[3:] == 1.0)) for row in given])
+    theirs = np.array([np.concatenate(law_of_tick(law, row[:3], row[3:] == 1.0)) for row in given])
     assert np.abs((found - theirs) / np.spacing(theirs)).max() <= places
 
 
