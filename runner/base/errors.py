@@ -48,6 +48,18 @@ class TemporaryError(RunnerError):
     exit_code = 75  # EX_TEMPFAIL of sysexits.h
 
 
+class TableError(RunnerError):
+    """A file that is not a table of numbers, or lacks a column.
+
+    Attributes:
+        problems: A message for each problem, without the file's name.
+    """
+
+    def __init__(self, path: Path, *problems: str) -> None:
+        super().__init__(f"{path}: {'; '.join(problems)}")
+        self.problems = problems
+
+
 class ConfigError(RunnerError):
     """Config that cannot be run, with one message for each problem.
 

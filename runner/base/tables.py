@@ -1,7 +1,7 @@
-"""Columns of numbers in text files, and the layout of such a file, from its content.
+"""Tables: columns of numbers in text and Parquet files, recognised by content.
 
-Commas, semicolons, tabs or blanks separate the cells. Lines of comments may stand above the names of the columns, and
-a line of units below them. If commas do not separate cells, they may be decimal points.
+In text, commas, semicolons, tabs or blanks separate the cells. Lines of comments may stand above the names of the
+columns, and a line of units below them. If commas do not separate cells, they may be decimal points.
 """
 
 import csv
@@ -18,17 +18,34 @@ import numpy as np
 from numpy.typing import NDArray
 
 from runner.base.arrays import FloatArray
-from runner.base.errors import RunnerError, nearest
-from runner.base.limits import RECORDING_NUMBERS, RECORDING_ROW, RECORDING_ROWS, ExcessError
+from runner.base.errors import TableError, nearest
+from runner.base.limits import (
+    RECORDING,
+    RECORDING_NUMBERS,
+    RECORDING_ROW,
+    RECORDING_ROWS,
+    ExcessError,
+    Limit,
+)
+from runner.base.parquet_tables import number_columns, open_columns
 from runner.base.sanitize import few, quoted
 
 MISSING = ("", "nan", "na", "null", "none", "-nan", "nan(ind)", "-nan(ind)")
 """Cells without a number, in lower case."""
 
+PARQUET = b"PAR1"
+"""The first bytes of a Parquet file."""
+
 _COMMENTS = ("#", "%", "//")
 _HEAD = 200  # lines, all but the last two may be comments
 _SAMPLE = 50  # rows from which columns of numbers are found
 _MOST_TOLD = 5  # problems of one file
+
+
+def first_problems(problems: Sequence[str], count: int) -> list[str]:
+    """Return the first of a number of problems of a file, and how many follow."""
+    more = count - _MOST_TOLD
+    return [*problems[:_MOST_TOLD], *([f"{more} more problems like these"] if more > 0 else [])]
 
 
 @dataclass(frozen=True)
@@ -99,7 +116,7 @@ class Table:
             shown = [
                 f"{quoted(name)}{' with numbers' * (name in self.others)}{nearest(name, known)}" for name in missing
             ]
-            raise RunnerError(f"{self.path}: has no column {few(shown)}; its columns: {few(known) or 'none'}")
+            raise TableError(self.path, f"has no column {few(shown)}; its columns: {few(known) or 'none'}")
 
 
 @dataclass(frozen=True)
@@ -115,7 +132,42 @@ class _Layout:
         return csv.reader(lines, delimiter=self.separator) if self.separator else map(str.split, lines)
 
 
-def read_text_table(path: Path, file: TextIO, wanted: Sequence[str] | None = None, form: str = "text") -> Table:
+Wanted = Sequence[str] | Callable[[Sequence[str]], Sequence[str]]
+"""The columns to read, or a function that chooses them from the names of all."""
+
+
+def read_table(path: Path, wanted: Wanted | None = None, limit: Limit = RECORDING) -> Table:
+    """Return the columns of a text or Parquet file.
+
+    Args:
+        path: The file.
+        wanted: The columns to read, each of whose cells holds a number or nothing; None for all that hold numbers.
+        limit: Upper limit of its size, unpacked.
+
+    Raises:
+        TableError: if it is not a table, or lacks a column.
+        OSError: if it cannot be read.
+        ExcessError: if it is too large.
+    """
+    if excess := limit.excess(path.stat().st_size):
+        raise ExcessError(f"it {excess}")
+    with path.open("rb") as file:
+        head = file.read(4096)
+    if head.startswith(PARQUET):
+        read = open_columns(path, limit=limit)
+        columns, others = number_columns(read, {})
+        table = Table(path, "Parquet", columns, others=others)
+        chosen = wanted(read.column_names) if callable(wanted) else wanted
+        if chosen is not None:
+            table.require(chosen)
+        return table if chosen is None else replace(table, columns={name: columns[name] for name in chosen})
+    if b"\0" in head:
+        raise TableError(path, "is neither text nor Parquet")
+    with path.open(encoding="utf-8-sig", errors="replace", newline="") as text:
+        return read_text_table(path, text, wanted)
+
+
+def read_text_table(path: Path, file: TextIO, wanted: Wanted | None = None, form: str = "text") -> Table:
     """Return the columns of a text file.
 
     Args:
@@ -132,9 +184,10 @@ def read_text_table(path: Path, file: TextIO, wanted: Sequence[str] | None = Non
     layout = _layout(path, file)
     file.seek(0)
     names = list(layout.names)
+    wanted = wanted(names) if callable(wanted) else wanted
     twice = [name for name in dict.fromkeys(names) if names.count(name) > 1 and (wanted is None or name in wanted)]
     if twice and wanted is not None:
-        raise RunnerError(f"{path}: has the column {quoted(twice[0])} more than once")
+        raise TableError(path, f"has the column {quoted(twice[0])} more than once")
     rows = _Rows(file, layout)
     sample = list(_first(rows, _SAMPLE))
     numeric = [place for place, name in enumerate(names) if name not in twice and _has_numbers(sample, place)]
@@ -164,7 +217,7 @@ def _layout(path: Path, file: TextIO) -> _Layout:
         elif line.strip():
             found.append((number, line))
     if not found:
-        raise RunnerError(f"{path}: is empty. Allowed: a log with rows of numbers.")
+        raise TableError(path, "is empty. Allowed: rows of numbers.")
     (number, first), *second = found
     separator = ";" if first.count(";") else max(",\t", key=first.count)
     layout = _Layout(separator if separator in first else "", (), (), number)
@@ -293,19 +346,19 @@ class _Numbers:
         numbers = np.frombuffer(data, dtype=np.float64).reshape(len(lines), -1) if len(data) else np.empty((0, most))
         self._refuse_infinite(numbers, lines)
         if self._problems:
-            raise RunnerError(f"{self._path}: {'; '.join(self._shown())}")
+            raise TableError(self._path, *first_problems(self._problems, self._told))
         return numbers, np.frombuffer(lines, dtype=np.int64) if lines else np.empty(0, dtype=np.int64), tuple(notes)
 
     def _refuse_infinite(self, numbers: FloatArray, lines: Sequence[int]) -> None:
         for row, column in np.argwhere(np.isinf(numbers))[: _MOST_TOLD + 1] if self._strict else ():
-            self._add(f"line {lines[row]}: {self._names[self._places[column]]} is 'inf'; needed: a finite number")
+            self._add(f"line {lines[row]}: {self._names[self._places[column]]} is 'inf'; allowed: a finite number")
 
     def _cell(self, line: int, place: int, text: str) -> float:
         found = _number(text, ",")
         if found is not None:
             return found
         if self._strict and text.lower() not in MISSING:
-            self._add(f"line {line}: {self._names[place]} is {quoted(text)}; needed: a finite number")
+            self._add(f"line {line}: {self._names[place]} is {quoted(text)}; allowed: a finite number")
         return math.nan
 
     def _tell(self, line: int, cells: int) -> None:
@@ -315,7 +368,3 @@ class _Numbers:
         self._told += 1
         if len(self._problems) < _MOST_TOLD:
             self._problems.append(problem)
-
-    def _shown(self) -> list[str]:
-        more = self._told - _MOST_TOLD
-        return [*self._problems, *([f"{more} more problems like these"] if more > 0 else [])]

@@ -20,6 +20,7 @@ from runner.caveats.setting_rules import SETTING_RULES
 from runner.caveats.trace_rules import TRACE_RULES
 from runner.caveats.versions import rules_digest
 from runner.config.judgement import THRESHOLDS, CaveatsConfig
+from runner.schema.bound import Range
 
 _KEYS = {rule: key for rule, (key, *_) in THRESHOLDS.items()}
 _values = attrgetter(*(f"{rule}.{key}" for rule, key in _KEYS.items()))
@@ -107,7 +108,7 @@ def _of_setting(setting: Setting, thresholds: Mapping[str, Mapping[str, float]])
     caveats = []
     for rule in SETTING_RULES:
         value = rule.measure(setting)
-        if value is not None and value > thresholds[rule.name][_KEYS[rule.name]]:
+        if value is not None and Range(high=thresholds[rule.name][_KEYS[rule.name]]).exceeded(value):
             caveats.append(Caveat(rule.name, rule.tell(value, setting), value))
     return caveats
 
@@ -134,7 +135,7 @@ def look_together(watches: Sequence[Watch], signals: Signals) -> None:
     worst = np.maximum.reduceat(np.concatenate(measured, axis=-1), firsts, axis=-1)
     worst = worst.reshape(len(watches), -1, len(TRACE_RULES))
     limits = np.array([watch._limits for watch in watches])
-    sprung = (worst > limits[:, None]).sum(axis=1)
+    sprung = Range(high=limits[:, None]).exceeded(worst).sum(axis=1)
     for watch in watches:
         watch._seen += worst.shape[1]
     for run, number in zip(*sprung.nonzero(), strict=True):

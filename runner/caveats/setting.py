@@ -147,7 +147,7 @@ def _left_out_of(config: "RunConfig") -> Mapping[str, Sequence[str]]:
     viscous, coulomb = np.zeros((2, arm.model.nq))
     if isinstance(plant, TorquePlantConfig):
         friction = joint_friction("plant.friction", plant.friction, arm.model.joint_names)
-        viscous, coulomb = friction.viscous, friction.coulomb
+        viscous, coulomb = np.array([friction.viscous, friction.coulomb])
     flexibility = find_flexibility(config)
     armature = arm.model.armature
     if flexibility is not None:

@@ -24,7 +24,7 @@ if TYPE_CHECKING:
     from runner.statistics.proportion import Share
     from runner.statistics.spec import Kept
     from runner.store import Run, Sweep
-    from runner.store.baselines import Band, Bands, Finding
+    from runner.store.baselines import Bands, Finding
     from runner.store.cells import Move, SweepBaseline
 
 _MOVE_COLUMNS = ("cell", "metric", *numbers("was", "is", "moved"), "beyond the seeds' spread")
@@ -186,15 +186,11 @@ def _check_bands(runs: "Sequence[Run]", given: "Bands | None") -> int:
 def _report(run: "Run", baseline: "Bands", findings: "Sequence[Finding]") -> str:
     wrong = [finding for finding in findings if not finding.good]
     head = f"{run.folder}: {len(wrong)} of {len(findings)} metrics fall short of {baseline.name}"
-    rows: list[list[Cell]] = [[f.metric, Number(f.value), _range(f.band), f.band.reason] for f in wrong]
+    rows: list[list[Cell]] = [
+        [f.metric, Number(f.value), f.band.range.text(plain_number), f.band.reason] for f in wrong
+    ]
     failure = [f"  {run.failure}"] if run.failure else []
     return "\n".join([head, *failure, terminal(Table("", ["metric", *numbers("found", "band"), "reason"], rows))])
-
-
-def _range(band: "Band") -> str:
-    if band.min is None or band.max is None:
-        return f"up to {plain_number(band.max)}" if band.min is None else f"{plain_number(band.min)} or more"
-    return f"{plain_number(band.min)} to {plain_number(band.max)}"
 
 
 def _check_spec(runs: "Sequence[Run]", cells: Sequence[str], at_most: float | None) -> int:

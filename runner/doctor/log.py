@@ -16,8 +16,8 @@ from runner.doctor.log_motion import LogMotion, make_motion
 from runner.doctor.log_names import Named, named, writer_of
 from runner.recordings.columns_map import ColumnsMap, factors_of, read_map
 from runner.recordings.consistency import WITHOUT_GRAVITY, check_consistency
-from runner.recordings.files import read_table
-from runner.recordings.parquet import calibration_of
+from runner.recordings.files import read_log
+from runner.recordings.lerobot import calibration_of
 from runner.recordings.recording import Recording, to_recording
 from runner.robots.model import RobotModel
 from runner.schema.units import WRITTEN
@@ -92,8 +92,8 @@ def examine_log(
     Args:
         path: The log, a file or a folder.
         model: The arm; None lists the columns only.
-        topic: Of a ROS bag, see read_table.
-        episode: Of a LeRobot data set, see read_table.
+        topic: Of a ROS bag, see read_log.
+        episode: Of a LeRobot data set, see read_log.
         given: A column map that is taken instead of a proposal.
 
     Raises:
@@ -101,7 +101,7 @@ def examine_log(
     """
     if given is not None:
         return _examine_given(path, model, given)
-    table = read_table(path, None, topic, episode)
+    table = read_log(path, None, topic, episode)
     names = list(named(list(table.columns), table.units))
     time, period = _time(table, names)
     findings = [Finding("note", "rows", note) for note in table.notes]
@@ -128,7 +128,7 @@ def _examine_given(path: Path, model: RobotModel | None, given: Path) -> LogExam
     if model is None:
         raise RunnerError("--columns: needs --robot ROBOT, whose joints the column map names.")
     said, _ = read_map(given, model.joint_names, model.joint_units)
-    table = read_table(path, None, said.topic, said.episode)
+    table = read_log(path, None, said.topic, said.episode)
     table.require([*([said.time.column] if said.time else []), *said.columns])
     keys = said.model_dump(exclude_defaults=True)["columns"]
     meanings = [Meaning(name, keys[name], f"said in {given.name}") for name in said.columns]

@@ -5,12 +5,11 @@ from functools import cached_property
 from typing import Any
 
 from runner.base.arrays import FloatArray
-from runner.plants.compiled_friction import put
 from runner.plants.compiled_motion import ArmCode, links_torques
 from runner.robots.model import RobotModel
 from runner.symbolic.arm import ArmConstants, constant_of, constants_of
 from runner.symbolic.bullet_step import BulletArm, BulletLink, BulletStep, Functions
-from runner.symbolic.code import ROWS, SCRATCH, STATE, Block, Part, Repeat, Slots
+from runner.symbolic.code import ROWS, SCRATCH, STATE, Block, Part, Repeat, Slots, put
 from runner.symbolic.expression import (
     Value,
     all_of,

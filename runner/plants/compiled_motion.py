@@ -8,16 +8,17 @@ from typing import TYPE_CHECKING, Any, NamedTuple, Self
 import numpy as np
 
 from runner.base.arrays import FloatArray
-from runner.plants.compiled_friction import put
+from runner.plants.runge_kutta import advance_stage
 from runner.robots.model import RobotModel
 from runner.symbolic.algebra import ArmAlgebra, Factors
 from runner.symbolic.arm import ArmConstants, constants_of, to_scalars
-from runner.symbolic.code import ROWS, SCRATCH, STATE, TABLE, Block, Part, Repeat, Slots
+from runner.symbolic.code import ROWS, SCRATCH, STATE, TABLE, Block, Part, Repeat, Slots, put
 from runner.symbolic.engine import MOST_JOINTS, evaluator
 from runner.symbolic.expression import Value, places
+from runner.symbolic.maths import Array
 from runner.symbolic.program import Expressed, Frame, program
 from runner.symbolic.structure import any_number, arm_pattern, values_of
-from runner.symbolic.vectors import Vector, add, scale, subtract, times
+from runner.symbolic.vectors import Vector, add, as_array, scale, subtract, times
 
 if TYPE_CHECKING:  # these modules use this one
     from runner.plants.flexibility import Flexibility
@@ -73,15 +74,15 @@ class Mover:
         """
         n, q, v = self._count, self._q, self._v
         first, scratch = self._at.take(SCRATCH, 4 * n)
-        q_i, v_i, one, two = (scratch[part * n : (part + 1) * n] for part in range(4))
-        ahead, weight_one, weight_two = places(TABLE, 0, 3)
-        a_i = self.acceleration(q_i, v_i, acting)
-        stage = [
-            *add(q, scale(ahead * h, v_i)),
-            *add(v, scale(ahead * h, a_i)),
-            *add(one, scale(weight_one, a_i)),
-            *add(two, scale(weight_two, a_i)),
-        ]
+        one, two = ([*[0.0] * n, *scratch[part * n : (part + 1) * n]] for part in (2, 3))  # of velocities only
+
+        def slope(x: Array) -> Array:
+            speeds = x[n:].tolist()
+            return np.array([*speeds, *self.acceleration(x[:n].tolist(), speeds, acting)], dtype=object)
+
+        x, row = as_array([*q, *v]), places(TABLE, 0, 3)
+        at, sums = advance_stage(slope, x, h, row, as_array(scratch[: 2 * n]), [as_array(one), as_array(two)])
+        stage, (one, two) = [*at, *sums[0][n:], *sums[1][n:]], (one[n:], two[n:])
         sixth = h / 6.0
         begin = put(SCRATCH, first, [*q, *v, *[0.0] * (2 * n)])
         stages = Repeat([put(SCRATCH, first, stage)], 4, tabled=True)

@@ -3,8 +3,6 @@
 It also contains encoders and drives of the motors; see runner/plants/friction.py for their friction.
 """
 
-from collections.abc import Callable
-
 import numpy as np
 
 from runner.base.arrays import FloatArray
@@ -12,30 +10,13 @@ from runner.base.lazy_modules import pin
 from runner.plants.compiled_motion import CompiledStep
 from runner.plants.flexibility import Flexibility
 from runner.plants.plant import Plant
+from runner.plants.runge_kutta import runge_kutta
 from runner.robots.model import RobotModel
 
 
 def links_of(model: RobotModel, flexible: np.ndarray) -> RobotModel:
     """Return the model of an arm's links, without the armature of flexible joints, which belongs to their motors."""
     return model.with_armature(np.where(flexible, 0.0, model.armature))
-
-
-def runge_kutta(slope: Callable[[FloatArray], FloatArray], x: FloatArray, h: float, steps: int) -> FloatArray:
-    """Return the state after a number of steps of the classical Runge-Kutta scheme.
-
-    Args:
-        slope: Function that returns the time derivative of a state.
-        x: Initial state.
-        h: Step, in s.
-        steps: Number of steps.
-    """
-    for _ in range(steps):
-        k1 = slope(x)
-        k2 = slope(x + 0.5 * h * k1)
-        k3 = slope(x + 0.5 * h * k2)
-        k4 = slope(x + h * k3)
-        x = x + (h / 6.0) * (k1 + 2.0 * k2 + 2.0 * k3 + k4)
-    return x
 
 
 class FlexibleJoints(Plant):

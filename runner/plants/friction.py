@@ -9,8 +9,9 @@ from runner.plants.flexible_joints import FlexibleJoints
 from runner.plants.friction_law import JointFriction
 from runner.plants.plant import Plant, PlantWrapper
 from runner.robots.model import RobotModel
+from runner.symbolic.maths import NUMPY, Array, Backend, Scalar
 
-_PIVOTS = 100  # upper limit; an arm of ten joints needs one if no joint starts or stops, else a few
+MOST_PIVOTS = 100  # upper limit; an arm of ten joints needs one if no joint starts or stops, else a few
 _ROUNDING = 1e-12  # relative to the acting torques
 
 
@@ -34,7 +35,7 @@ class _Friction(PlantWrapper):
 
     def __init__(self, plant: Plant, law: JointFriction, tick: float) -> None:
         super().__init__(plant)
-        self._law, self._tick = law, tick
+        self._law, self._tick, self._asymmetry = law, tick, np.array(law.asymmetry)
         self._friction = np.zeros(len(plant.q))
         self._direction = np.zeros(len(plant.q))
         """0 for a joint that friction held in the last tick, 1 or -1 for one that moved up or down."""
@@ -53,6 +54,12 @@ class _Friction(PlantWrapper):
         """Hold the torques minus friction for one tick; see Plant."""
         self._friction = self._find_friction(tau)
         self.plant.advance(tau - self._friction)
+
+    @staticmethod
+    def _law_of_tick(law: JointFriction, v: FloatArray, direction: FloatArray) -> tuple[FloatArray, FloatArray]:
+        """Return a law for a tick, as arrays; see JointFriction.at."""
+        damping, level = law.at(NUMPY, v.tolist(), (direction == 0.0).tolist())
+        return np.array(damping), np.array(level)
 
     def _find_friction(self, tau: FloatArray) -> FloatArray:
         """Return the friction torques under motor torques, shapes (nq,), in N m."""
@@ -81,6 +88,7 @@ class Frictional(_Friction):
     def __init__(self, plant: Plant, model: RobotModel, law: JointFriction, tick: float) -> None:
         super().__init__(plant, law, tick)
         self._model, self._data = model.separate()
+        self._dry = law.dry
 
     def set_gravity(self, gravity: FloatArray) -> None:
         """Set the gravity vector; see Plant."""
@@ -92,12 +100,14 @@ class Frictional(_Friction):
         bias = pin.nonLinearEffects(model, data, self.q, self.dq).copy()
         M = np.triu(pin.crba(model, data, self.q))  # crba fills the upper triangle only
         M += np.triu(M, 1).T
-        damping, level = self._law.at(self.dq, self._direction == 0.0)
-        pushed = M @ self.dq + h * (tau + self._contact_torque() - bias - self._law.asymmetry)
+        damping, level = self._law_of_tick(self._law, self.dq, self._direction)
+        pushed = M @ self.dq + h * (tau + self._contact_torque() - bias - self._asymmetry)
         columns = solve_symmetric(M + np.diag(h * damping), np.column_stack([pushed, h * np.eye(len(tau))]))
         speed, mobility = columns[:, 0], columns[:, 1:]
-        mu, self._direction = stopping_torques(mobility, speed, level, self._direction)
-        friction: FloatArray = damping * (speed - mobility @ mu) + mu + self._law.asymmetry
+        mu = np.zeros(len(tau))
+        if self._dry:
+            mu, self._direction = stopping_torques(mobility, speed, level, self._direction)
+        friction: FloatArray = damping * (speed - mobility @ mu) + mu + self._asymmetry
         return friction
 
     def _contact_torque(self) -> FloatArray:
@@ -131,8 +141,8 @@ class MotorFriction(_Friction):
 
     def _find_friction(self, tau: FloatArray) -> FloatArray:
         plant, h, on = self._springs, self._tick, self._springs.flexibility.flexible
-        B, o = plant.flexibility.motors[on], self._own.asymmetry
-        b, level = self._own.at(plant.dtheta[on], self._direction[on] == 0.0)
+        B, o = plant.flexibility.motors[on], self._asymmetry[on]
+        b, level = self._law_of_tick(self._own, plant.dtheta[on], self._direction[on])
         free = (B * plant.dtheta[on] + h * ((tau - plant.spring_torque())[on] - o)) / (B + h * b)
         stopping = free * (B + h * b) / h
         mu = np.clip(stopping, -level, level)
@@ -163,18 +173,37 @@ def stopping_torques(
     Returns:
         mu, shape (nq,), in N m; and the direction of each joint, as above.
     """
-    direction = direction.copy()
-    for _ in range(_PIVOTS):
-        mu = direction * limit
-        held = direction == 0.0
-        left = speed - mobility @ mu
-        if held.any():
-            mu[held] = solve_symmetric(mobility[np.ix_(held, held)], left[held])
-            left = speed - mobility @ mu
-        too_much = np.where(held, np.abs(mu) - limit, -left * direction / np.diagonal(mobility))
-        wrong = np.flatnonzero(too_much > _ROUNDING * (limit + np.abs(speed) / np.diagonal(mobility)))
-        if not len(wrong):
+    for _ in range(MOST_PIVOTS):
+        mu, direction, agrees = pivot(NUMPY, mobility, speed, limit, direction)
+        if agrees:
             break
-        first = wrong[0]
-        direction[first] = np.sign(mu[first]) if held[first] else 0.0
-    return np.clip(mu, -limit, limit), direction
+    return mu, direction
+
+
+def pivot(
+    backend: Backend, mobility: Array, speed: Array, limit: Array, direction: Array
+) -> tuple[Array, Array, Scalar]:
+    """Return the dry friction for given directions, and the directions after the first wrong one has changed.
+
+    Args:
+        backend: Functions over these numbers.
+        mobility: See stopping_torques.
+        speed: See stopping_torques.
+        limit: See stopping_torques.
+        direction: See stopping_torques.
+
+    Returns:
+        mu within its limits, shape (n,), in N m; the directions, shape (n,); and the condition that none was wrong.
+    """
+    less, select, rates = backend.less, backend.select, np.diagonal(mobility)
+    held, sliding = backend.equal(direction, 0.0), direction * limit
+    mu = select(held, backend.solve_chosen(mobility, speed - mobility @ sliding, held), sliding)
+    left = speed - mobility @ mu
+    too_much = select(held, backend.absolute(mu) - limit, -left * direction / rates)
+    first, agrees = backend.first(less(_ROUNDING * (limit + backend.absolute(speed) / rates), too_much))
+
+    def change() -> Array:
+        return np.asarray(select(first, select(held, select(less(mu, 0.0), -1.0, 1.0), 0.0), direction))
+
+    direction = backend.choose(agrees, lambda: direction, change)
+    return select(less(limit, mu), limit, select(less(mu, -limit), -limit, mu)), direction, agrees

@@ -1,9 +1,7 @@
 """Friction laws of joints: viscous, dry with a static level, Stribeck's curve, and a sigmoid."""
 
-from collections.abc import Sequence
-from dataclasses import dataclass, replace
-from functools import cached_property
-from typing import Any
+from collections.abc import Callable, Sequence
+from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -12,14 +10,15 @@ from runner.base import portable
 from runner.base.arrays import FloatArray
 from runner.base.errors import ConfigError
 from runner.schema.values import FrictionConfig, expand
+from runner.symbolic.arm import to_scalars
+from runner.symbolic.maths import Backend
+from runner.symbolic.vectors import Matrix, Scalar, Vector
 
 _STEEPEST = 700.0  # exp of it is a double
 _EXPONENTS = {"exponential": 1, "gauss": 2}
-_ARRAYS = "viscous", "coulomb", "asymmetry", "stiction", "stribeck_speed", "sigmoid"
 
 
-@dataclass(frozen=True)
-class JointFriction:
+class JointFriction(NamedTuple):
     r"""Friction torques of n joints against their speeds v.
 
     .. math:: \tau_f = -b v - \sigma(v) - \mu, \quad \mu \in o + [c + (s - c) w(v)] \, \mathrm{sgn}(v), \qquad
@@ -29,80 +28,91 @@ class JointFriction:
     At rest sgn is any number of [-1, 1] and w is 1. w is the curve of Armstrong-Helouvry, Dupont and Canudas de Wit
     (Automatica 30(7), 1994), sigma that of Gaz et al. (IEEE Robotics and Automation Letters 4(4), 2019).
 
+    The numbers are floats, or expressions for a program.
+
     Attributes:
         viscous: b, shape (n,), in N m s/rad.
         coulomb: c, shape (n,), in N m.
         asymmetry: o, shape (n,), in N m, at most c in magnitude.
         stiction: s - c, shape (n,), in N m; s is the static level.
-        stribeck_speed: v_s, shape (n,), in rad/s; 0 if w is 0 in motion.
-        sigmoid: phi_1, phi_2 and phi_3, shape (3, n), in N m, s/rad and rad/s.
+        steepness: phi_2, shape (n,), in s/rad.
+        odds: exp(-phi_2 phi_3) for joints that move up, and its inverse for those that move down, shape (2, n).
+        slopes: phi_1 phi_2 odds / (1 + odds), shape (2, n), in N m s/rad.
+        stribeck_speed: v_s, shape (n,), in rad/s; None if w is 0 in motion.
         exponent: e, 1 or 2.
     """
 
-    viscous: FloatArray
-    coulomb: FloatArray
-    asymmetry: FloatArray
-    stiction: FloatArray
-    stribeck_speed: FloatArray
-    sigmoid: FloatArray
+    viscous: Vector
+    coulomb: Vector
+    asymmetry: Vector
+    stiction: Vector
+    steepness: Vector
+    odds: Matrix
+    slopes: Matrix
+    stribeck_speed: Sequence[Scalar | None]
     exponent: int
+
+    @property
+    def acts(self) -> NDArray[np.bool_]:
+        """True for each joint with friction, shape (n,)."""
+        found: NDArray[np.bool_] = np.any(np.array([*self[:2], self.stiction, self.slopes[0]]) > 0.0, axis=0)
+        return found
+
+    @property
+    def dry(self) -> bool:
+        """Whether a joint has dry friction."""
+        return any(value != 0.0 for value in [*self.coulomb, *self.stiction])
 
     def of(self, joints: slice | NDArray[np.bool_]) -> "JointFriction":
         """Return the friction of some of the joints."""
-        return replace(self, **{name: getattr(self, name)[..., joints] for name in _ARRAYS})
+        parts = (np.array(part, dtype=object)[..., joints].tolist() for part in self[:-1])
+        return JointFriction._make([*parts, self.exponent])
 
-    @cached_property
-    def acts(self) -> NDArray[np.bool_]:
-        """True for each joint with friction, shape (n,)."""
-        parts = self.viscous, self.coulomb, self.stiction, self.sigmoid[0] * self.sigmoid[1]
-        found: NDArray[np.bool_] = np.any(np.array(parts) > 0.0, axis=0)
-        return found
+    def convert(self, number: Callable[[float], Scalar]) -> "JointFriction":
+        """Return the numbers converted by `number`; 0, 1 and -1 stay floats."""
+        arrays = {name: to_scalars(getattr(self, name), number) for name in self._fields[:-2]}
+        speeds = [to_scalars(speed, number) if speed else None for speed in self.stribeck_speed]
+        return self._replace(**arrays, stribeck_speed=speeds)
 
-    @cached_property
-    def odds(self) -> FloatArray:
-        """exp(-phi_2 phi_3) for joints that move up, and its inverse for those that move down, shape (2, n)."""
-        found: FloatArray = portable.exp(np.array([[-1.0], [1.0]]) * self.sigmoid[1] * self.sigmoid[2])
-        return found
-
-    @cached_property
-    def slopes(self) -> FloatArray:
-        """phi_1 phi_2 odds / (1 + odds) of the sigmoid, shape (2, n), in N m s/rad."""
-        found: FloatArray = self.sigmoid[0] * self.sigmoid[1] * self.odds / (1.0 + self.odds)
-        return found
-
-    def at(self, v: FloatArray, held: NDArray[np.bool_]) -> tuple[FloatArray, FloatArray]:
+    def at(self, backend: Backend, v: Vector, held: Sequence[Scalar]) -> tuple[Vector, Vector]:
         """Return the law that holds for a tick from its first speeds on.
 
         The sigmoid becomes its secant through the origin, sigma(v) / v. So no part of friction can drive a joint.
 
         Args:
+            backend: Functions over these numbers.
             v: Speeds at the start of the tick, shape (n,), in rad/s.
-            held: True for joints at rest, shape (n,).
+            held: Conditions that the joints are at rest, shape (n,).
 
         Returns:
             Torque per speed, in N m s/rad, and level of dry friction, in N m, of each joint, shapes (n,).
         """
-        damping, level = self.viscous, self.coulomb
-        if self.slopes.any():
-            damping = damping + self._secant(v)
-        if self.stiction.any():
-            level = level + self.stiction * np.where(held, 1.0, self._weight(np.abs(v)))
+        damping, level = list(self.viscous), list(self.coulomb)
+        for joint, speed in enumerate(v):
+            if self.slopes[0][joint] != 0.0:
+                damping[joint] = damping[joint] + self._secant(backend, joint, speed)
+            if self.stiction[joint] != 0.0:
+                weight = backend.select(held[joint], 1.0, self._weight(backend, joint, speed))
+                level[joint] = level[joint] + self.stiction[joint] * weight
         return damping, level
 
-    def _weight(self, speed: FloatArray) -> FloatArray:
-        """Return w in motion, shape (n,)."""
-        falls = self.stribeck_speed > 0.0
-        share = speed / np.where(falls, self.stribeck_speed, 1.0)
-        return np.where(falls, portable.exp(-(share**self.exponent)), 0.0)
+    def _weight(self, backend: Backend, joint: int, v: Scalar) -> Scalar:
+        """Return w of a joint in motion."""
+        falls = self.stribeck_speed[joint]
+        if falls is None:
+            return 0.0
+        share = backend.absolute(v) / falls
+        return backend.decay(share if self.exponent == 1 else share * share)[0]
 
-    def _secant(self, v: FloatArray) -> FloatArray:
-        """Return sigma(v) / v, shape (n,), in N m s/rad."""
-        up, y = v >= 0.0, self.sigmoid[1] * np.abs(v)
-        slope = np.where(up, self.slopes[0], self.slopes[1])
-        odds = np.where(up, self.odds[0], self.odds[1])
-        share = np.where(y > 0.0, -portable.expm1(-y) / np.where(y > 0.0, y, 1.0), 1.0)
-        found: FloatArray = slope * share / (1.0 + odds * portable.exp(-y))
-        return found
+    def _secant(self, backend: Backend, joint: int, v: Scalar) -> Scalar:
+        """Return sigma(v) / v of a joint, in N m s/rad."""
+        down, y = backend.less(v, 0.0), self.steepness[joint] * backend.absolute(v)
+        slope, odds = (
+            backend.select(down, of_joint[1][joint], of_joint[0][joint]) for of_joint in (self.slopes, self.odds)
+        )
+        (left, gone), rests = backend.decay(y), backend.equal(y, 0.0)
+        share = backend.select(rests, 1.0, gone / backend.select(rests, 1.0, y))
+        return slope * share / (1.0 + odds * left)
 
 
 def joint_friction(key: str, config: FrictionConfig, joints: Sequence[str]) -> JointFriction:
@@ -145,7 +155,15 @@ def joint_friction(key: str, config: FrictionConfig, joints: Sequence[str]) -> J
     ]
     if problems:
         raise ConfigError(problems)
-    viscous, speeds = array("viscous", config.viscous), array("stribeck_speed", speed)
+    odds = portable.exp(np.array([[-1.0], [1.0]]) * sigmoid[1] * sigmoid[2])
     return JointFriction(
-        viscous, coulomb, asymmetry, static - coulomb, speeds, sigmoid, _EXPONENTS[config.stribeck_curve]
+        viscous=array("viscous", config.viscous).tolist(),
+        coulomb=coulomb.tolist(),
+        asymmetry=asymmetry.tolist(),
+        stiction=(static - coulomb).tolist(),
+        steepness=sigmoid[1].tolist(),
+        odds=odds.tolist(),
+        slopes=(sigmoid[0] * sigmoid[1] * odds / (1.0 + odds)).tolist(),
+        stribeck_speed=[value or None for value in array("stribeck_speed", speed).tolist()],
+        exponent=_EXPONENTS[config.stribeck_curve],
     )

@@ -11,8 +11,8 @@ from runner.plants.compiled_motion import CompiledStep
 from runner.plants.decoupled import Motion, TorquePlantConfig, assemble_flexible, assemble_plant, find_motion
 from runner.plants.flexible_config import FlexibleJointsConfig
 from runner.plants.flexible_config import modes as modes
-from runner.plants.flexible_joints import runge_kutta
 from runner.plants.plant import Plant
+from runner.plants.runge_kutta import runge_kutta
 from runner.robots.model import RobotModel
 from runner.robots.robot import Robot
 

@@ -10,8 +10,8 @@ from runner.base.arrays import FloatArray
 from runner.base.errors import ConfigError, SimulationError, nearest
 from runner.base.lazy_modules import pin
 from runner.plants.computation import ComputationConfig
-from runner.plants.flexible_joints import runge_kutta
 from runner.plants.plant import Plant
+from runner.plants.runge_kutta import runge_kutta
 from runner.robots.robot import Robot, by_joint
 from runner.robots.vibration import Beam, Chain, Mode, cut, find_modes, largest_rate, moving_links, span
 from runner.schema.model import StrictModel

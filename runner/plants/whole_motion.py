@@ -4,14 +4,15 @@ from collections.abc import Callable, Sequence
 from typing import Any, NamedTuple
 
 from runner.plants.compiled_bullet import bullet_scalars, expressed_steps
-from runner.plants.compiled_friction import CompiledFriction, FrictionScalars, friction_scalars, put
+from runner.plants.compiled_friction import brake
 from runner.plants.compiled_motion import Mover
 from runner.plants.decoupled import Motion
+from runner.plants.friction_law import JointFriction
 from runner.robots.robot import StageBase
 from runner.symbolic.algebra import ArmAlgebra
 from runner.symbolic.arm import ArmConstants, constants_of
 from runner.symbolic.bullet_step import BulletArm
-from runner.symbolic.code import SCRATCH, STATE, Part, Slots
+from runner.symbolic.code import SCRATCH, STATE, Part, Slots, put
 from runner.symbolic.expression import Value, places
 from runner.symbolic.structure import any_number
 from runner.symbolic.vectors import Vector, product, transpose
@@ -27,7 +28,7 @@ class ArmScalars(NamedTuple):
     """
 
     constants: ArmConstants
-    friction: FrictionScalars
+    friction: JointFriction
     base: ArmConstants | None
 
 
@@ -75,7 +76,7 @@ def motion_scalars(motion: Motion, step: float, tick: float, number: Callable[[f
         elif index:
             base = constants_of(robot.model, number, [0.0] * 3, str(robot.stages[index].base_frame))
         constants = constants_of(arm.model, number, own)
-        arms.append(ArmScalars(constants, friction_scalars(arm.friction, number), base))
+        arms.append(ArmScalars(constants, arm.friction.convert(number), base))
     return MotionScalars(number(step), number(tick), gravity, tuple(arms))
 
 
@@ -111,6 +112,6 @@ def expressed_motion(motion: Motion, numbers: MotionScalars, at: Slots, torques:
         acting: Vector = torques[joint : joint + count]
         if arm.friction.acts.any():
             state = places(STATE, joint, count), places(STATE, nq + joint, count)
-            acting = CompiledFriction(algebra, own.friction, *state, at).brake(acting, numbers.tick, arms)
+            acting = brake(algebra, own.friction, state, acting, numbers.tick, at, arms)
         Mover(algebra, joint, nq, count, at).move(acting, numbers.step, arms)
     return [*bases, *arms]

@@ -7,9 +7,9 @@ from pathlib import Path
 
 from runner.base.errors import RunnerError
 from runner.base.limits import LOG_FILES, RECORDING, ExcessError
-from runner.base.tables import Table, read_text_table
+from runner.base.tables import Table, read_table, read_text_table
 from runner.recordings.bags import bag_files, read_bag
-from runner.recordings.parquet import INFO, read_lerobot, read_parquet
+from runner.recordings.lerobot import EPISODE, INFO, one_episode, read_lerobot
 
 _FOLDERS = "a bag of ROS 2 (.mcap or .db3 files), or a LeRobot data set (meta/info.json)"
 
@@ -19,14 +19,7 @@ def is_log_folder(path: Path) -> bool:
     return path.is_dir() and ((path / INFO).is_file() or (path / "metadata.yaml").is_file() or bool(bag_files(path)))
 
 
-def is_bag(path: Path) -> bool:
-    """Return whether a recording is a ROS bag, a file or a folder."""
-    if path.is_dir():
-        return not (path / INFO).is_file()
-    return path.is_file() and bool(bag_files(path))
-
-
-def read_table(
+def read_log(
     path: Path, wanted: Sequence[str] | None = None, topic: str | None = None, episode: int | None = None
 ) -> Table:
     """Return the columns of a log.
@@ -60,18 +53,18 @@ def _read(path: Path, wanted: Sequence[str] | None, topic: str | None, episode: 
         raise RunnerError(f"{path}: topic: is for ROS bags. Allowed: null for other logs.")
     if excess := RECORDING.excess(path.stat().st_size):
         raise ExcessError(f"it {excess}")
-    with path.open("rb") as file:
-        head = file.read(4096)
-    if head.startswith(b"PAR1"):
-        return read_parquet(path, episode)
-    if episode is not None:
-        raise RunnerError(f"{path}: episode: is for LeRobot data sets. Allowed: null for other logs.")
-    if head.startswith(b"PK\x03\x04"):
+    if zipfile.is_zipfile(path):
         return _read_zip(path, wanted)
-    if b"\0" in head:
-        raise RunnerError(f"{path}: is not a known log. Allowed: text, Parquet, a zip of mecademicpy or a ROS bag.")
-    with path.open(encoding="utf-8-sig", errors="replace", newline="") as text:
-        return read_text_table(path, text, wanted)
+
+    def choose(names: Sequence[str]) -> list[str]:
+        return [*(wanted or ()), *([EPISODE] if EPISODE in names else [])]
+
+    table = read_table(path, None if wanted is None else choose)
+    if EPISODE in table.columns:
+        return one_episode(table, episode)
+    if episode is not None:
+        raise RunnerError(f"{path}: episode: is for logs with the column {EPISODE}. Allowed: null for other logs.")
+    return table
 
 
 def _read_folder(path: Path, topic: str | None, episode: int | None) -> Table:

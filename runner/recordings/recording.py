@@ -12,7 +12,7 @@ from runner.base.errors import RunnerError
 from runner.base.tables import Table
 from runner.recordings.clock import Clock, longest_step, read_clock
 from runner.recordings.columns_map import Column, ColumnsMap, Factor, Holds, Side, Signal, stacked
-from runner.recordings.files import read_table
+from runner.recordings.files import read_log
 from runner.recordings.smoothing import CUTOFF, evenly
 from runner.schema.model import LARGEST
 
@@ -86,7 +86,7 @@ def read_recording(path: Path, said: ColumnsMap, factors: Mapping[str, Factor], 
     """Return the signals of a recording.
 
     Args:
-        path: The log; see read_table.
+        path: The log; see read_log.
         said: What its columns are.
         factors: What makes each column SI, by its name.
         fill_gaps: Longest gap that is filled, in s; 0 for none.
@@ -98,7 +98,7 @@ def read_recording(path: Path, said: ColumnsMap, factors: Mapping[str, Factor], 
     if not 0.0 <= fill_gaps <= LONGEST_FILLED:
         raise RunnerError(f"gaps of up to {LONGEST_FILLED:g} s can be filled; found {fill_gaps:g} s")
     wanted = [*([said.time.column] if said.time is not None else []), *said.columns]
-    return to_recording(read_table(path, wanted, said.topic, said.episode), said, factors, fill_gaps)
+    return to_recording(read_log(path, wanted, said.topic, said.episode), said, factors, fill_gaps)
 
 
 def to_recording(table: Table, said: ColumnsMap, factors: Mapping[str, Factor], fill_gaps: float = 0.0) -> Recording:

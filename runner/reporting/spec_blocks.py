@@ -10,7 +10,7 @@ from runner.reporting.document import Block, Notice, Table
 from runner.reporting.markup import literal
 from runner.reporting.metric_titles import title
 from runner.reporting.table import numbers
-from runner.schema.bound import Bound
+from runner.schema.bound import Bound, Range
 from runner.statistics.spec import History, ends_of, set_after
 from runner.store import Run
 
@@ -94,9 +94,9 @@ def late_text(metric: str, bound: Bound, history: History) -> str:
 
 def _ends_text(metric: str, low: float | None, high: float | None) -> str:
     unit = unit_of(metric) or "1"
-    if low is None:
-        return "none" if high is None else f"at most {quantity(high, unit, _DIGITS)}"
-    return f"at least {quantity(low, unit, _DIGITS)}" if high is None else format_range(low, high, unit)
+    return Range.between(low, high).text(
+        lambda end: quantity(end, unit, _DIGITS), lambda first, last: format_range(first, last, unit)
+    )
 
 
 def share_texts(share: "Share | None") -> tuple[str, str, str]:

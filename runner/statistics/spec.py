@@ -121,21 +121,13 @@ def judge(
     kept: dict[str, NDArray[np.bool_] | None] = {}
     for metric, bound in bounds.items():
         if metric in metrics:
-            kept[metric] = within(bound, values(metric))
+            kept[metric] = bound.range.holds(values(metric))
         else:
             kept[metric] = None if metrics else np.zeros(repetitions, dtype=bool)
     there = [one for one in kept.values() if one is not None]
     whole = _count(np.logical_and.reduce(there)) if len(there) == len(kept) else None
     shares = {metric: None if one is None else _count(one) for metric, one in kept.items()}
     return Spec(tuple(Kept(metric, bound, shares[metric]) for metric, bound in bounds.items()), whole)
-
-
-def within(bound: Bound, values: FloatArray) -> NDArray[np.bool_]:
-    """Return True for values that keep a bound, shape of the values; NaN does not."""
-    low = -np.inf if bound.min is None else bound.min
-    high = np.inf if bound.max is None else bound.max
-    kept: NDArray[np.bool_] = np.isfinite(values) & (values >= low) & (values <= high)
-    return kept
 
 
 def read_spec(record: Mapping[str, Any]) -> Spec:

@@ -146,7 +146,7 @@ def check_run(run: Run, baseline: Bands) -> list[Finding]:
     findings = []
     for metric, band in baseline.bands.items():
         value = run.metrics[metric].median if metric in run.metrics else None
-        good = run.status == "ok" and value is not None and band.holds(value)
+        good = run.status == "ok" and value is not None and band.range.holds(value)
         findings.append(Finding(metric, value, band, good))
     return findings
 

@@ -22,6 +22,7 @@ from runner.base.atomic import write_atomically
 from runner.base.errors import StoreError
 from runner.base.machine import ROUNDING, Machine, equal_up_to_rounding, parts_apart, read_machine
 from runner.base.sanitize import escaped
+from runner.schema.bound import Range
 from runner.schema.model import StrictModel
 from runner.store import Run, Sweep
 
@@ -52,11 +53,10 @@ class Spread(StrictModel):
     seeds: int
     sensitive: NonNegativeFloat | None = None
 
-    def holds(self, value: float | None) -> bool:
-        """Return True if a median is in the range of the seeds; no value counts as above every number."""
-        low = math.inf if self.min is None else self.min
-        high = math.inf if self.max is None else self.max
-        return low <= (math.inf if value is None else value) <= high
+    @property
+    def range(self) -> Range:
+        """The range of the seeds; a repetition without value counts as above every number."""
+        return Range(*(math.inf if end is None else end for end in (self.min, self.max)))
 
 
 class Cell(StrictModel):
@@ -282,7 +282,8 @@ def _compare(cell: str, run: Run, known: Cell, remark: str) -> Iterator[Move]:
             yield Move(cell, name, was, value, was is not None)
         elif was.median != value if remark == BROKEN else not equal_up_to_rounding(was.median, value):
             sensitive = remark == ROUNDED and (was.sensitive or 0.0) > ROUNDING
-            yield Move(cell, name, was, value, not was.holds(value), remark=SENSITIVE if sensitive else remark)
+            beyond = was.range.verdict(value) != "within"
+            yield Move(cell, name, was, value, beyond, remark=SENSITIVE if sensitive else remark)
 
 
 def cell_names(sweep: Sweep) -> list[str]:

@@ -43,7 +43,7 @@ _TABLE = """
     plants: __init__=plants.__init__ bullet bullet_engine bullet_links bullet_servers compiled_bullet compiled_friction
         compiled_motion=compiled.motion computation=plants.computation decoupled flexibility=plants.flexibility
         flexible_config flexible_joints=plants.flexible_joints friction friction_law kinematic motor_limits mujoco
-        plant=plants.plant rk4 rk4_flexible_links servo stepped_bullet whole_motion wrappers=touched
+        plant=plants.plant rk4 rk4_flexible_links runge_kutta servo stepped_bullet whole_motion wrappers=touched
     plugins: features guard metric_units registry
     robots: __init__=robots.__init__ canonical description drawn elements file_extensions inertials
         inverse_kinematics joint_dynamics mismatch mjcf mjcf_files mjcf_motors mjcf_urdf model mounting
@@ -53,7 +53,7 @@ _TABLE = """
         wrench
     simulation: batch by_ticks calibration=calibration_job calibration_config=checked_calibration contact=loop.contact
         loop=simulation recorder results run=job sensors
-    symbolic: algebra arm bullet_step code engine expression maths=controllers.maths program regressor structure
+    symbolic: algebra arm backend bullet_step code engine expression maths=controllers.maths program regressor structure
         tangent vectors=compiled.vectors
     trajectories: __init__=trajectories.__init__ circle from_file geometry goal joint_motion=trajectories.joint_motion
         joint_quintic joint_sinusoids joint_waypoints line lissajous motion quintic shaped splines square

@@ -7,6 +7,7 @@ from dataclasses import dataclass
 from typing import Any
 
 from runner.symbolic.expression import Expression, expression, in_order, place
+from runner.symbolic.vectors import Vector
 
 GIVEN, ACTING, ROWS, STATE, SCRATCH, PARS, TABLE = "given", "acting", "rows", "state", "scratch", "pars", "table"
 ARRAYS = (GIVEN, ROWS, STATE, SCRATCH, PARS, TABLE)
@@ -242,6 +243,18 @@ class Slots:
         self.widths[space] += count
         return first, [place(space, first + index) for index in range(count)]
 
+    def keep(self, values: Vector, parts: list[Part]) -> Vector:
+        """Add the code that writes numbers to new slots, for later parts; return the slots. Constants stay floats."""
+        first, kept = self.take(SCRATCH, sum(isinstance(value, Expression) for value in values))
+        parts.append(put(SCRATCH, first, [value for value in values if isinstance(value, Expression)]))
+        slots = iter(kept)
+        return [next(slots) if isinstance(value, Expression) else value for value in values]
+
     def number(self, value: float) -> Expression:
         """Return the next parameter, for a number that may differ between runs; see Values."""
         return self.take(PARS, 1)[1][0]
+
+
+def put(space: str, first: int, values: Vector) -> Block:
+    """Return the code that writes values to consecutive slots."""
+    return Block([(space, first + index, value) for index, value in enumerate(values)])

@@ -1,12 +1,14 @@
 """Scalar functions for control laws, in addition to NumPy's operators: protocol and float version."""
 
+import operator
 from collections.abc import Callable
-from math import floor
+from math import exp, expm1, floor
 from typing import Any, Protocol, TypeVar
 
 import numpy as np
 from numpy.typing import NDArray
 
+from runner.base import portable
 from runner.base.lazy_modules import lapack, pin
 
 Array = NDArray[Any]
@@ -29,11 +31,23 @@ class Backend(Protocol):
         ...
 
     def less(self, a: Scalar, b: Scalar) -> Scalar:
-        """Return the condition a < b of two scalars."""
+        """Return the condition a < b of two scalars, or of two arrays entry by entry."""
+        ...
+
+    def equal(self, a: Scalar, b: Scalar) -> Scalar:
+        """Return the condition a = b of two scalars, or of two arrays entry by entry."""
         ...
 
     def any_of(self, *conditions: Scalar) -> Scalar:
         """Return the condition that at least one condition holds."""
+        ...
+
+    def first(self, conditions: Array) -> tuple[Array, Scalar]:
+        """Return for each condition whether it is the first that holds, shape (n,), and the condition that none is."""
+        ...
+
+    def select(self, condition: Scalar, yes: Scalar, no: Scalar) -> Scalar:
+        """Return one of two scalars, or of the entries of two arrays by conditions; both are computed before."""
         ...
 
     def maximum(self, a: Scalar, b: Scalar) -> Scalar:
@@ -45,11 +59,15 @@ class Backend(Protocol):
         ...
 
     def absolute(self, a: Scalar) -> Scalar:
-        """Return the absolute value of a scalar."""
+        """Return the absolute value of a scalar, or of the entries of an array."""
         ...
 
     def sqrt(self, a: Scalar) -> Scalar:
         """Return the square root of a scalar."""
+        ...
+
+    def decay(self, x: Scalar) -> tuple[Scalar, Scalar]:
+        """Return exp(-x) and 1 - exp(-x) of a scalar that is not negative."""
         ...
 
     def solve_three(self, A: Array, b: Array, singular: str | None) -> tuple[Array, Scalar]:
@@ -58,6 +76,10 @@ class Backend(Protocol):
 
     def solve_symmetric(self, A: Array, b: Array, singular: str | None) -> Array:
         """Return A^-1 b of a positive definite A, with only its upper triangle read; b of shape (n,) or (n, k)."""
+        ...
+
+    def solve_chosen(self, A: Array, b: Array, chosen: Array) -> Array:
+        """Return A^-1 b of the rows and columns of a positive definite A that conditions choose; 0 in other rows."""
         ...
 
     def positive_definite(self, A: Array) -> Scalar:
@@ -76,26 +98,33 @@ class Backend(Protocol):
 class _NumpyBackend:
     """The functions on floats; see Backend."""
 
+    less, equal = staticmethod(operator.lt), staticmethod(operator.eq)
+    maximum, absolute = staticmethod(max), staticmethod(abs)
+
     def choose(self, condition: Scalar, yes: Callable[[], Chosen], no: Callable[[], Chosen]) -> Chosen:
         return yes() if condition else no()
-
-    def less(self, a: Scalar, b: Scalar) -> Scalar:
-        return a < b
 
     def any_of(self, *conditions: Scalar) -> Scalar:
         return any(conditions)
 
-    def maximum(self, a: Scalar, b: Scalar) -> Scalar:
-        return max(a, b)
+    def select(self, condition: Scalar, yes: Scalar, no: Scalar) -> Scalar:
+        if isinstance(condition, np.ndarray):
+            return np.where(condition, yes, no)
+        return yes if condition else no
+
+    def first(self, conditions: Array) -> tuple[Array, Scalar]:
+        first, at = np.zeros(len(conditions), dtype=bool), conditions.argmax()
+        first[at] = conditions[at]
+        return first, not conditions[at]
 
     def floor(self, a: Scalar) -> Scalar:
         return float(floor(a))
 
-    def absolute(self, a: Scalar) -> Scalar:
-        return abs(a)
-
     def sqrt(self, a: Scalar) -> Scalar:
         return float(np.sqrt(a))
+
+    def decay(self, x: Scalar) -> tuple[Scalar, Scalar]:
+        return exp(-x), -expm1(-x)
 
     def solve_three(self, A: Array, b: Array, singular: str | None) -> tuple[Array, Scalar]:
         lu, pivots, solution, info = lapack.dgesv(A, b)
@@ -110,6 +139,12 @@ class _NumpyBackend:
         if info and singular is not None:
             raise np.linalg.LinAlgError(singular)
         return np.asarray(solution)
+
+    def solve_chosen(self, A: Array, b: Array, chosen: Array) -> Array:
+        x = np.zeros(len(b))
+        if chosen.any():
+            x[chosen] = portable.solve_symmetric(A[np.ix_(chosen, chosen)], b[chosen])
+        return x
 
     def positive_definite(self, A: Array) -> Scalar:
         return lapack.dpotrf(A)[1] == 0

@@ -1,8 +1,5 @@
-"""Tip or joint motion from a CSV or Parquet file, whose error messages contain the line."""
+"""Tip or joint motion from a text or Parquet file, whose error messages contain the line."""
 
-import csv
-import math
-import re
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from itertools import chain, pairwise
 from pathlib import Path
@@ -12,9 +9,10 @@ import numpy as np
 from pydantic import BeforeValidator, PositiveFloat, ValidationInfo, field_validator
 
 from runner.base.arrays import FloatArray
-from runner.base.errors import ConfigError
-from runner.base.limits import TABLE, TABLE_NUMBERS, ExcessError, open_parquet
+from runner.base.errors import ConfigError, TableError
+from runner.base.limits import TABLE, TABLE_NUMBERS, ExcessError
 from runner.base.sanitize import quoted
+from runner.base.tables import first_problems, read_table
 from runner.robots.robot import Robot
 from runner.schema.model import StrictModel
 from runner.schema.units import Seconds
@@ -28,35 +26,42 @@ ALLOWED = (
     "t,x,y,z or t,q1,q2,... with a column for each joint; velocities (vx,vy,vz or dq1,dq2,...) and then accelerations "
     "(ax,ay,az or ddq1,ddq2,...) may follow"
 )
-_NUMBER = re.compile(r"[+-]?(\d+\.?\d*|\.\d+)([eE][+-]?\d+)?")
 _ROUNDING = 1e-9  # of the largest speed
-_MOST_TOLD = 5  # problems of one file
 
 
-def read_table(path: Path) -> dict[str, list[float]]:
+def read_motion(path: Path) -> dict[str, list[float]]:
     """Return the columns of a data file, without unit conversion.
 
     Args:
-        path: A Parquet file if the name ends in .parquet; otherwise a CSV file.
+        path: The file; see runner.base.tables.
 
     Raises:
         ConfigError: if the file cannot be read, is too large, or does not describe a motion; the message contains the
             lines.
     """
-    parquet = path.suffix.lower() == ".parquet"
+
+    def check(names: Sequence[str]) -> Sequence[str]:
+        if not parts_of(names):
+            raise _refused(path, f"has the columns {quoted(','.join(names))}; allowed: {ALLOWED}")
+        return names
+
     try:
-        if excess := TABLE.excess(path.stat().st_size):
-            raise _refused(path, excess)
-        columns = _read_parquet(path) if parquet else _read_csv(path)
-    except (OSError, UnicodeDecodeError, ExcessError) as error:
+        table = read_table(path, check, TABLE)
+    except TableError as error:
+        raise _refused(path, *error.problems) from error
+    except (OSError, ExcessError) as error:
         raise _refused(path, f"cannot be read: {error}") from error
-
-    def place(row: int) -> str:
-        return f"row {row + 1}" if parquet else f"line {row + 2}"
-
-    problems = list(wrong_columns(columns, place))
-    if problems:
-        raise _refused(path, *problems)
+    gaps = [
+        (row, name) for name, column in table.columns.items() for row in np.flatnonzero(~np.isfinite(column)).tolist()
+    ]
+    problems = [
+        *table.notes,
+        *(["has a line of units; allowed: columns in s, m and rad without one"] if table.units else []),
+        *(f"{table.place(row)}: {name} is missing; allowed: a finite number" for row, name in gaps),
+    ]
+    columns = {name: column.tolist() for name, column in table.columns.items()}
+    if problems := problems or list(wrong_columns(columns, table.place)):
+        raise _refused(path, *first_problems(problems, len(problems)))
     return columns
 
 
@@ -109,66 +114,8 @@ def wrong_columns(columns: Columns, place: Callable[[int], str]) -> Iterator[str
                 yield f"{place(row)}: {name} is {columns[name][row]:g}; the motion must start and end at rest, with 0"
 
 
-def _read_csv(path: Path) -> dict[str, list[float]]:
-    with path.open(encoding="utf-8-sig", newline="") as file:
-        lines = list(csv.reader(file))
-    while lines and not any(cell.strip() for cell in lines[-1]):
-        lines.pop()
-    names = [name.strip() for name in lines[0]] if lines else []
-    if not parts_of(names):
-        raise _refused(path, f"line 1 has the columns {quoted(','.join(names))}; allowed: {ALLOWED}")
-    problems: list[str] = []
-    rows: list[list[float]] = []
-    for number, cells in enumerate(lines[1:], start=2):
-        if len(cells) != len(names):
-            problems.append(f"line {number}: {len(cells)} cells for {len(names)} columns")
-            continue
-        texts = [cell.strip() for cell in cells]
-        wrong = [(name, text) for name, text in zip(names, texts, strict=True) if not _is_number(text)]
-        problems += [
-            f"line {number}: {name} is {quoted(text) if text else 'missing'}; allowed: a finite number"
-            for name, text in wrong
-        ]
-        rows.append([math.nan if wrong else float(text) for text in texts])
-    if problems:
-        raise _refused(path, *problems)
-    return {name: [row[index] for row in rows] for index, name in enumerate(names)}
-
-
-def _is_number(text: str) -> bool:
-    return bool(_NUMBER.fullmatch(text)) and math.isfinite(float(text))
-
-
-def _read_parquet(path: Path) -> dict[str, list[float]]:
-    import pyarrow
-
-    try:
-        file = open_parquet(path, TABLE)
-        if excess := TABLE_NUMBERS.excess(file.metadata.num_rows * file.metadata.num_columns):
-            raise _refused(path, excess)
-        table = file.read()
-    except pyarrow.ArrowException as error:
-        raise _refused(path, f"is not a Parquet file: {str(error).splitlines()[0]}") from error
-    columns: dict[str, list[float]] = {}
-    problems: list[str] = []
-    for name in table.column_names:
-        values = table[name].to_pylist()
-        for row, value in enumerate(values):
-            if not isinstance(value, int | float) or isinstance(value, bool) or not math.isfinite(value):
-                found = "missing" if value is None else quoted(value)
-                problems.append(f"row {row + 1}: {name} is {found}; allowed: a finite number")
-        columns[name] = values
-    if problems:
-        raise _refused(path, *problems)
-    return {name: [float(value) for value in values] for name, values in columns.items()}
-
-
 def _refused(path: Path, *problems: str) -> ConfigError:
-    told = [f"trajectory.file: {path.name}: {problem}" for problem in problems[:_MOST_TOLD]]
-    more = len(problems) - _MOST_TOLD
-    return ConfigError(
-        [*told, *([f"trajectory.file: {path.name}: {more} more problems like these"] if more > 0 else [])]
-    )
+    return ConfigError([f"trajectory.file: {path.name}: {problem}" for problem in problems])
 
 
 def _check_interpolation(value: Any) -> Any:

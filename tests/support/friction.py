@@ -1,7 +1,10 @@
 """Friction laws for tests, from the keys of `plant.friction`, and a wheel to brake."""
 
+import numpy as np
+
 from runner.plants.friction_law import JointFriction, joint_friction
 from runner.schema.values import FrictionConfig, SigmoidConfig
+from runner.symbolic.maths import NUMPY
 
 MASS = 0.5 + 2.0 * 0.3**2  # kg m^2, of the wheel about its joint
 WHEEL = """
@@ -22,3 +25,9 @@ def friction_law(
     sigmoid = SigmoidConfig(level=level, steepness=steepness, shift=shift)
     config = FrictionConfig(**{**NONE, **values}, stribeck_curve=stribeck_curve, sigmoid=sigmoid)
     return joint_friction("plant.friction", config, [f"q{joint + 1}" for joint in range(joints)])
+
+
+def law_of_tick(law: JointFriction, v: np.ndarray, held: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """Return torque per speed and level of dry friction of each joint, shapes (n,)."""
+    damping, level = law.at(NUMPY, v.tolist(), held.tolist())
+    return np.array(damping), np.array(level)

@@ -14,6 +14,7 @@ from runner.reporting.charts import palette
 from runner.reporting.charts.canvas import GREY, INK, drawing
 from runner.robots.model import RobotModel
 from runner.schema.values import FrictionConfig, SigmoidConfig
+from runner.symbolic.maths import NUMPY
 
 _INERTIA, _STIFFNESS, _SPEED, _TICK = 0.68, 50.0, 0.1, 1e-3  # kg m^2, N m/rad, rad/s, s
 _OMEGA = np.sqrt(_STIFFNESS / _INERTIA)
@@ -60,7 +61,7 @@ def _draw_laws(axes: Axes) -> None:
     }
     v = np.linspace(-0.4, 0.4, 402)  # not 0
     for (name, law), color in zip(kinds.items(), palette.LIGHT, strict=False):
-        torque = [law.at(np.array([w]), np.array([False])) for w in v]
+        torque = [law.at(NUMPY, [float(w)], [False]) for w in v]
         y = [b[0] * w + c[0] * np.sign(w) + law.asymmetry[0] for w, (b, c) in zip(v, torque, strict=True)]
         axes.plot(v, y, color=color, lw=1.4, label=name)
     axes.set(xlabel="speed (rad/s)", ylabel="friction (N m)", title="kinds", ylim=(-2.2, 3.9))

@@ -168,8 +168,12 @@ MUTANTS = [
     *_of(
         "plants/friction_law.py",
         "physics/plants/test_friction_law.py",
-        ("a static level that moving joints have", "np.where(held, 1.0, self._weight(np.abs(v)))", "1.0"),
-        ("a sigmoid that drives a joint", "1.0 + odds * portable.exp(-y)", "1.0 - odds * portable.exp(-y)"),
+        (
+            "a static level that moving joints have",
+            "backend.select(held[joint], 1.0, self._weight(backend, joint, speed))",
+            "1.0",
+        ),
+        ("a sigmoid that drives a joint", "1.0 + odds * left", "1.0 - odds * left"),
     ),
     *_of(
         "plants/servo.py",

@@ -9,7 +9,7 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from runner.assembly.compiled.law import LawScalars, SymbolicBackend, expressed_torque, law_cache_key, law_scalars
+from runner.assembly.compiled.law import LawScalars, expressed_torque, law_cache_key, law_scalars
 from runner.assembly.run_config import RunConfig
 from runner.base.arrays import FloatArray
 from runner.base.errors import SimulationError
@@ -23,6 +23,7 @@ from runner.robots.robot import Robot
 from runner.sensing.encoders import EncoderNoise
 from runner.sensing.velocity import first_state, gains, next_velocity
 from runner.symbolic.algebra import PointScalars, expressed_points, point_scalars
+from runner.symbolic.backend import SymbolicBackend
 from runner.symbolic.code import GIVEN, ROWS, STATE, Block, Slots
 from runner.symbolic.engine import MOST_JOINTS, evaluator
 from runner.symbolic.expression import Value, both, equal, less, round_to_even, select

@@ -91,9 +91,9 @@ def take_data_file(resolved: Mapping[str, object], config_dirs: Sequence[Path]) 
     group = resolved.get("trajectory")
     if not (isinstance(group, dict) and group.get("kind") == "from_file" and isinstance(group.get("file"), str)):
         return
-    from runner.trajectories.from_file import read_table  # for few configs
+    from runner.trajectories.from_file import read_motion  # for few configs
 
-    group["columns"] = read_table(_find(group["file"], config_dirs))
+    group["columns"] = read_motion(_find(group["file"], config_dirs))
     if group.get("duration") is None:
         group["duration"] = group["columns"]["t"][-1]
 

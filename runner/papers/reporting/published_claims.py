@@ -1,6 +1,6 @@
 """Published claims as data, and verdicts on them from printed and simulated values."""
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from pathlib import Path
 from typing import Annotated, Literal, Self
 
@@ -11,6 +11,7 @@ from pydantic import Field, NonNegativeFloat, PositiveFloat, model_validator
 from runner.base.data_file import read_data
 from runner.base.errors import RunnerError
 from runner.base.paths import studies_dir
+from runner.schema.bound import Range
 from runner.schema.model import StrictModel
 
 CLAIMS = "claims.yaml"
@@ -21,11 +22,16 @@ Verdict = Literal[
     "matches", "differs", "smaller than printed", "larger than printed", "source contradicts itself", "undecided"
 ]
 CONTRADICTION: Verdict = "source contradicts itself"
+_VERDICTS: Mapping[str, Verdict] = {
+    "below": "smaller than printed",
+    "within": "matches",
+    "above": "larger than printed",
+}
 Simulated = Callable[[str, str], float | None]
 """Gives the simulated value of a metric of a run, whose name is given without the preset; None for no value."""
 
 
-class Bound(StrictModel):
+class ExpectedLimit(StrictModel):
     """What another number of the same source leads one to expect at most.
 
     Attributes:
@@ -92,9 +98,10 @@ class Extent(StrictModel):
         """Return True if a path, shape (T, 3), in m, has this extent; False if it has gaps (NaN)."""
         values = path[:, "xyz".index(self.axis)]
         low, high = values.min(), values.max()
-        wide = bool(abs(high - low - self.span) <= self.tolerance)
+        near = Range(-self.tolerance, self.tolerance)
         ends = (low + 0.5 * self.span, high - 0.5 * self.span)
-        return wide and (self.middle is None or all(abs(end - self.middle) <= self.tolerance for end in ends))
+        met = near.holds(high - low - self.span)
+        return bool(met and (self.middle is None or all(near.holds(end - self.middle) for end in ends)))
 
 
 class PublishedClaim(Simulation):
@@ -124,7 +131,7 @@ class PublishedClaim(Simulation):
     extents: list[Extent] = Field(default_factory=list)
     fails: bool = False
     reason: str
-    bound: Bound | None = None
+    bound: ExpectedLimit | None = None
     like: Likeness | None = None
     longer: str = ""
 
@@ -198,11 +205,9 @@ def judge(printed: float, measured: float | None, bound: float | None = None) ->
         "source contradicts itself" when even the bound, widened by FACTOR, stays below the printed value; else
         "matches" within FACTOR, "smaller than printed" below it, and "larger than printed" above it.
     """
-    if bound is not None and bound * FACTOR < printed:
+    if bound is not None and Range(high=bound * FACTOR).exceeded(printed):
         return CONTRADICTION
-    if measured is None or measured > printed * FACTOR:
-        return "larger than printed"
-    return "smaller than printed" if measured < printed / FACTOR else "matches"
+    return _VERDICTS[Range(printed / FACTOR, printed * FACTOR).verdict(measured)]
 
 
 def judge_motion(
@@ -234,7 +239,7 @@ def compared_with(claim: PublishedClaim, simulated: Simulated) -> float | None:
     return claim.value if claim.like is None else simulated(*claim.like.simulated_by)
 
 
-def scale_bound(bound: Bound, claims: Sequence[PublishedClaim], simulated: Simulated) -> float | None:
+def scale_bound(bound: ExpectedLimit, claims: Sequence[PublishedClaim], simulated: Simulated) -> float | None:
     """Return the number to expect from the simulated number of the other claim that a bound names."""
     value = simulated(*_other(bound, claims).simulated_by)
     return None if value is None else value * bound.scale
@@ -268,5 +273,5 @@ def verdict_on(claim: PublishedClaim, claims: Sequence[PublishedClaim], simulate
     return "differs" if claim.like is not None and verdict != "matches" else verdict
 
 
-def _other(bound: Bound, claims: Sequence[PublishedClaim]) -> PublishedClaim:
+def _other(bound: ExpectedLimit, claims: Sequence[PublishedClaim]) -> PublishedClaim:
     return next(claim for claim in claims if claim.number == bound.claim)

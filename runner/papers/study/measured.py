@@ -10,6 +10,7 @@ from runner.base.quantities import ROUNDING as SMALLEST
 from runner.base.quantities import format_range, number, quantity
 from runner.reporting.document import Document, Notice, NoticeKind
 from runner.reporting.outline import chapters
+from runner.schema.bound import Range
 
 ROUNDING = 1e-9  # m, rad, N or a ratio: far below the resolution of any run, far above rounding errors
 
@@ -105,7 +106,7 @@ class Measured:
         """Return the condition that its relative difference to another value is at most `share`."""
         right = _as_measured(other, self.unit)
         text = f"{self.name} within {number(100.0 * share)} % of {right.name}"
-        return _condition(text, self, right, lambda a, b: abs(a - b) <= share * abs(b))
+        return _condition(text, self, right, lambda a, b: Range(-share * abs(b), share * abs(b)).holds(a - b))
 
     def _compare(self, other: Measured | float, sign: str, holds: Callable[[float, float], bool]) -> Condition:
         right = _as_measured(other, self.unit)

@@ -15,7 +15,7 @@ from runner.reporting.spec_blocks import RULE, bound_text, late_text, probabilit
 from runner.reporting.sweep import maps
 from runner.reporting.sweep.subject import Subject, key_label, spans_decades
 from runner.schema.bound import Bound
-from runner.statistics.spec import bounds_of, merge_histories, settings, within
+from runner.statistics.spec import bounds_of, merge_histories, settings
 from runner.store import Sweep
 from runner.store.axes import Axis
 
@@ -80,7 +80,7 @@ def find_failing(subject: Subject, spec: Mapping[str, Bound]) -> list[Failing]:
     for metric, bound in spec.items():
         measured = values.get(metric, np.full(shape, np.nan))
         there = ~np.isnan(measured)
-        failed = there & ~within(bound, measured)
+        failed = there & ~bound.range.holds(measured)
         found.append(Failing(bound_text(metric, bound), failed.sum(axis=1), there.sum(axis=1)))
         any_failed, all_there = any_failed | failed, all_there & there
     if len(found) > 1:

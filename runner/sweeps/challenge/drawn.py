@@ -109,8 +109,7 @@ def _breaks_spec(run: Run, metrics: dict[str, FloatArray], count: int) -> Mask:
     broken = np.zeros(count, dtype=bool)
     for name, bound in (get(run.config, "spec.metrics") or {}).items():
         if name in metrics:
-            holds = Bound.model_validate(bound).holds
-            broken |= np.array([not holds(float(value)) for value in metrics[name]])
+            broken |= ~Bound.model_validate(bound).range.holds(metrics[name])
     return broken
 
 

@@ -46,7 +46,7 @@ def test_what_falls_short_is_a_table_with_reasons(cli, copy_run, reference):
     assert title.split() == ["metric", "found", "band", "reason"]
     table = {row.split()[0]: row.split(maxsplit=2)[1:] for row in rows}
     assert table["peak_joint_speed"][1].split("  ") == ["1000 to 10000", "as if it flew"]
-    assert table["settling_time"] == ["-", f"{'up to 1':<15}it should settle"]
+    assert table["settling_time"] == ["-", f"{'at most 1':<15}it should settle"]
     assert table["max_tracking_error"][0] == "-"  # a goal has none
     assert "saturation_fraction" not in table
 

@@ -15,7 +15,7 @@ from runner.base.paths import examples_dir
 from runner.config.compose.compose import compose
 from runner.doctor.log import examine_log
 from runner.doctor.log_files import map_text
-from runner.recordings.files import read_table
+from runner.recordings.files import read_log
 
 
 @pytest.fixture(scope="module")
@@ -136,7 +136,7 @@ def test_a_split_bag_is_read_in_order(tmp_path, arm, signals):
         folder = made.write_bag(tmp_path / f"part{place}", part, ".db3")
         (tmp_path / "log").mkdir(exist_ok=True)
         shutil.move(folder / f"part{place}.db3", tmp_path / "log" / f"log_{9 + place}.db3")
-    table = read_table(tmp_path / "log")
+    table = read_log(tmp_path / "log")
     assert np.diff(table.columns["stamp"]) == pytest.approx(0.008)
     assert len(table) == 500
 
@@ -221,7 +221,7 @@ def doubled(table):
     ("make", "options", "wanted"),
     [
         (lambda p, f: (p / "log.csv").write_text(""), [], "is empty"),
-        (lambda p, f: (p / "log.csv").write_bytes(b"\x00\x01" * 1000), [], "is not a known log"),
+        (lambda p, f: (p / "log.csv").write_bytes(b"\x00\x01" * 1000), [], "is neither text nor Parquet"),
         (lambda p, f: (p / "log.csv").write_text("once upon a time\nthere was an arm\n"), [], "no columns of joint"),
         (lambda p, f: f[:200].to_csv(p / "log.csv", index=False), [], "the log lasts 1.59 s"),
         (lambda p, f: [(p / "log.csv").mkdir(), *((p / "log.csv" / str(k)).touch() for k in range(1000))], [],
@@ -231,7 +231,7 @@ def doubled(table):
         (lambda p, f: f.to_csv(p / "log.csv", index=False), ["--package-path", "x"], "--package-path: is for robot"),
         (lambda p, f: f.to_csv(p / "log.csv", index=False), ["--format", "html"], "--format: is for robot files"),
         (lambda p, f: f.to_csv(p / "log.csv", index=False), ["--topic", "/a"], "topic: is for ROS bags"),
-        (lambda p, f: f.to_csv(p / "log.csv", index=False), ["--episode", "1"], "episode: is for LeRobot"),
+        (lambda p, f: f.to_csv(p / "log.csv", index=False), ["--episode", "1"], "episode: is for logs with the"),
         (lambda p, f: doubled(f).to_csv(p / "log.csv", index=False), [], "two arms"),
     ],
 )  # fmt: skip

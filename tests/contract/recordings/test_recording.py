@@ -158,10 +158,10 @@ def test_times_that_do_not_fit(tmp_path, times, rate, wanted):
         (["t,a,a", "0,1,2"], r"has the column 'a' more than once"),
         (
             ["t,a", "0,1", "1", "2,x", "3,inf"],
-            r"line 3: 1 cells for 2 columns; line 4: a is 'x'.*line 5: a is 'inf'; needed: a finite number",
+            r"line 3: 1 cells for 2 columns; line 4: a is 'x'.*line 5: a is 'inf'; allowed: a finite number",
         ),
-        (["t,a", *["0,-"] * 8], r"line 6: a is '-'; needed: a finite number; 3 more problems like these"),
-        ([], r"is empty. Allowed: a log with rows of numbers."),
+        (["t,a", *["0,-"] * 8], r"line 6: a is '-'; allowed: a finite number; 3 more problems like these"),
+        ([], r"is empty. Allowed: rows of numbers."),
     ],
 )
 def test_cells_that_do_not_fit(tmp_path, lines, wanted):
@@ -200,7 +200,7 @@ def test_a_recording_of_a_terabyte_is_not_read(tmp_path):
 def test_problems_beyond_the_first_are_counted_and_empty_lines_at_the_end_are_none(tmp_path):
     assert len(read_recording(write(tmp_path, [*rows(range(60)), "", ",,"]), said(), FACTORS).t) == 60
     with pytest.raises(
-        RunnerError, match=r"line 63: t is '-'; needed: a finite number; line 64: 2 cells for 3 columns"
+        RunnerError, match=r"line 63: t is '-'; allowed: a finite number; line 64: 2 cells for 3 columns"
     ):
         read_recording(write(tmp_path, [*rows(range(60)), "", "x,-,1", "x,1", "x,3,4"]), said(), FACTORS)
 

@@ -57,12 +57,12 @@ def test_a_valid_reference_is_read(load):
 )
 def test_both_ends_belong_to_a_band(ends, inside, outside):
     band = Band(**ends, reason="r")
-    assert all(band.holds(value) for value in inside)
-    assert not any(band.holds(value) for value in outside)
+    assert all(band.range.holds(value) for value in inside)
+    assert not any(band.range.holds(value) for value in outside)
 
 
 def test_nan_lies_in_no_band():
-    assert not Band(min=0.0, reason="r").holds(math.nan)
+    assert not Band(min=0.0, reason="r").range.holds(math.nan)
 
 
 def test_a_band_cannot_be_changed():

@@ -156,14 +156,16 @@ def test_a_name_leads_to_the_working_folder(written):
 @pytest.mark.parametrize(
     ("text", "problem"),
     [
-        ("time,x,y,z\n0,1,2,3\n", "line 1 has the columns 'time,x,y,z'; allowed: t,x,y,z or t,q1,q2,"),
-        ("t,x,y\n", "line 1 has the columns 't,x,y'; allowed: "),
-        ("t,q1,q3\n", "line 1 has the columns 't,q1,q3'; allowed: "),
-        ("", "line 1 has the columns ''; allowed: "),
+        ("time,x,y,z\n0,1,2,3\n", "has the columns 'time,x,y,z'; allowed: t,x,y,z or t,q1,q2,"),
+        ("t,x,y\n", "has the columns 't,x,y'; allowed: "),
+        ("t,q1,q3\n", "has the columns 't,q1,q3'; allowed: "),
+        ("", "is empty. Allowed: rows of numbers."),
         ("t,q1,q2,q3\n0,0,0,0\n1,0,,0\n2,0,0,0\n", "line 3: q2 is missing; allowed: a finite number"),
-        ("t,q1,q2,q3\n0,0,0,0\n1,0,nan,0\n2,0,0,0\n", "line 3: q2 is 'nan'; allowed: a finite number"),
-        ("t,q1,q2,q3\n0,0,0,0\n1,0,1e999,0\n2,0,0,0\n", "line 3: q2 is '1e999'; allowed: a finite number"),
-        ("t,q1,q2,q3\n0,0,0,0\n\n2,0,0,0\n", "line 3: 0 cells for 4 columns"),
+        ("t,q1,q2,q3\n0,0,0,0\n1,0,nan,0\n2,0,0,0\n", "line 3: q2 is missing; allowed: a finite number"),
+        ("t,q1,q2,q3\n0,0,0,0\n1,0,1e999,0\n2,0,0,0\n", "line 3: q2 is 'inf'; allowed: a finite number"),
+        ("t,q1,q2,q3\n0,0,0,0\n\n2,0,0,0\n", "has 2 rows; a motion needs 3 or more"),
+        ("t,q1\ns,deg\n0,0\n1,1\n2,0\n", "has a line of units; allowed: columns in s, m and rad without one"),
+        ("t,q1\n0,0\n1,1\n2,0\n3", "the last line, 5, is cut off and left out"),
         ("t,q1,q2,q3\n0,0,0,0\n1,0,0\n2,0,0,0\n", "line 3: 3 cells for 4 columns"),
         ("t,q1,q2,q3\n0,0,0,0\n1,0,0,0\n0.9,0,0,0\n", "line 4: t is 0.9 s after 1 s; time must run forward"),
         ("t,q1,q2,q3\n0,0,0,0\n1,0,0,0\n1,0,0,0\n", "line 4: t is 1 s after 1 s; time must run forward"),
@@ -223,7 +225,7 @@ def test_gaps_in_parquet_are_told(tmp_path):
     pa.parquet.write_table(pa.table({"t": [0.0, 1.0, None], "q1": [0.0, float("nan"), 0.0]}), tmp_path / "a.parquet")
     assert problems_of("a.parquet") == (
         "trajectory.file: a.parquet: row 3: t is missing; allowed: a finite number",
-        "trajectory.file: a.parquet: row 2: q1 is nan; allowed: a finite number",
+        "trajectory.file: a.parquet: row 2: q1 is missing; allowed: a finite number",
     )
 
 

@@ -82,5 +82,5 @@ def test_trailing_separators_and_a_line_that_is_cut_off(tmp_path):
 
 def test_an_empty_file_is_named(tmp_path):
     for text in ("", "\n\n", "# nothing\n"):
-        with pytest.raises(RunnerError, match=r"is empty\. Allowed: a log with rows of numbers"):
+        with pytest.raises(RunnerError, match=r"is empty\. Allowed: rows of numbers"):
             read(tmp_path, text)

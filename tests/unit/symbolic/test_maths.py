@@ -44,3 +44,20 @@ def test_scalars_and_choices():
     assert NUMPY.absolute(-1.5) == NUMPY.maximum(1.5, -2.0) == NUMPY.sqrt(2.25) == 1.5
     assert NUMPY.any_of(NUMPY.less(2.0, 1.0), NUMPY.less(1.0, 2.0))
     assert NUMPY.choose(False, lambda: 1 / 0, lambda: B) is B
+
+
+def test_functions_of_arrays_act_entry_by_entry():
+    a, b = np.array([1.0, 2.0, 3.0]), np.array([1.0, 3.0, 2.0])
+    assert NUMPY.less(a, b).tolist() == [False, True, False]
+    assert NUMPY.select(NUMPY.equal(a, b), -a, b).tolist() == [-1.0, 3.0, 2.0]
+    assert (NUMPY.select(True, 1.0, 2.0), NUMPY.decay(0.0)) == (1.0, (1.0, 0.0))
+    first, none = NUMPY.first(np.array([False, True, True]))
+    assert (first.tolist(), bool(none)) == ([False, True, False], False)
+    assert NUMPY.first(np.array([False, False]))[1]
+
+
+def test_chosen_rows_are_a_system_of_their_own():
+    A, b = np.array([[4.0, 1.0, 2.0], [1.0, 3.0, 0.0], [2.0, 0.0, 5.0]]), np.array([1.0, 2.0, 3.0])
+    found = NUMPY.solve_chosen(A, b, np.array([True, False, True]))
+    np.testing.assert_allclose([4.0 * found[0] + 2.0 * found[2], found[1], 2.0 * found[0] + 5.0 * found[2]], [1, 0, 3])
+    assert not NUMPY.solve_chosen(A, b, np.zeros(3, dtype=bool)).any()

@@ -10,8 +10,8 @@ from runner.papers.study.measured import Measured
 from runner.papers.study.results import Runs
 from runner.plants.bullet_engine import Bullet
 from runner.plants.compiled_motion import CompiledStep
-from runner.plants.flexible_joints import runge_kutta
 from runner.plants.mujoco import Mujoco
+from runner.plants.runge_kutta import runge_kutta
 from runner.robots.model import RobotModel
 from runner.store import Run
 
