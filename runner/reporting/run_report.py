@@ -3,6 +3,8 @@
 import json
 import re
 from collections.abc import Sequence
+from dataclasses import dataclass
+from functools import cached_property
 from typing import Any
 
 import numpy as np
@@ -13,6 +15,7 @@ from runner.base.errors import RunnerError
 from runner.base.machine import read_machine
 from runner.base.quantities import above_rounding, number, quantity, with_powers
 from runner.caveats.rounding_growth import SENSITIVE, STEP
+from runner.reporting.added_sections import added_sections, make_sections
 from runner.reporting.document import Block, Code, Cover, Document, Notice, Provenance, Section, Table, Text
 from runner.reporting.figures import before_failure, cover, desired_motion, playback, torque_and_error
 from runner.reporting.markup import literal
@@ -33,18 +36,31 @@ _KEY_AND_VALUE = (Column("key", "code"), Column("value", "code"))
 _LEVELS = {"0.01": "1 %", "0.99": "99 %"}  # quantiles that a table has room for
 
 
+@dataclass(frozen=True)
+class RunSubject:
+    """A stored run as its report looks at it: the subject of the sections of the report.
+
+    Attributes:
+        run: The stored run.
+    """
+
+    run: Run
+
+    @cached_property
+    def changed(self) -> Changes | None:
+        """The keys that differ from those of the run's groups; see changed_keys."""
+        return changed_keys(self.run)
+
+
 def run_document(run: Run) -> Document:
     """Return the report on a stored run: its name, the moving arm and four numbers first."""
-    changed = changed_keys(run)
+    subject = RunSubject(run)
+    own = make_sections(SECTIONS, subject)
     return Document(
         title=run_name(run),
-        subtitle=_subtitle(run, changed),
+        subtitle=_subtitle(run, subject.changed),
         abstract=literal(_abstract(run)),
-        sections=[
-            Section("The run", run_blocks(run)),
-            Section("Config", config_blocks(run, changed)),
-            Section("Provenance", (provenance([run]),)),
-        ],
+        sections=[own[0], *added_sections("run_section", subject), *own[1:]],
         date=str(run.provenance["date"]),
         cover=_cover(run) if (~np.isnan(run.joints("q"))).all(axis=1).sum() > 1 else None,
         notes=[literal(f"Caveats: {', '.join(_spaced(caveat['rule']) for caveat in run.caveats)}.")]
@@ -52,6 +68,22 @@ def run_document(run: Run) -> Document:
         else [],
         key_numbers=[*key_metrics(run, _KEY_METRICS), *filter(None, [nearest_to_limit(run)])],
     )
+
+
+def _results(subject: RunSubject) -> Section:
+    return Section("The run", run_blocks(subject.run))
+
+
+def _config(subject: RunSubject) -> Section:
+    return Section("Config", config_blocks(subject.run, subject.changed))
+
+
+def _provenance(subject: RunSubject) -> Section:
+    return Section("Provenance", (provenance([subject.run]),))
+
+
+SECTIONS = (_results, _config, _provenance)
+"""Sections: functions of the subject that return a section or None; plug-ins add theirs behind the first."""
 
 
 def run_name(run: Run) -> str:
