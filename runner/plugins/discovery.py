@@ -25,10 +25,10 @@ if TYPE_CHECKING:
     from importlib.metadata import EntryPoint
 
 GROUPS = (
-    "calibration", "controller", "environment", "joint_torque_sensor", "metric", "mismatch", "noise", "plant",
-    "section", "trajectory", "wrist_sensor",
+    "calibration", "controller", "endpoint_sensor", "environment", "joint_torque_sensor", "metric", "mismatch", "noise",
+    "plant", "section", "trajectory", "wrist_sensor",
 )  # fmt: skip
-"""Groups in which a part can be added; a section of a report is no part of a run."""
+"""Groups in which a part can be added; runs do not contain a section of a report."""
 
 _VARIABLE = "RUNNER_PLUGINS"  # one part a line, with absolute paths of files; worker processes inherit it
 

@@ -41,10 +41,17 @@ class Kinds:
         group: Name of the config group, such as "controller".
         modules: Module name of each kind.
         default: Kind of a config without `kind`; None if `kind` must be given.
+        base: Base class of the config of each kind.
     """
 
-    def __init__(self, group: str, modules: Mapping[str, str], default: str | None = None) -> None:
-        self.group, self.default = group, default
+    def __init__(
+        self,
+        group: str,
+        modules: Mapping[str, str],
+        default: str | None = None,
+        base: type[StrictModel] = StrictModel,
+    ) -> None:
+        self.group, self.default, self.base = group, default, base
         self._modules = dict(modules)
 
     def names(self) -> list[str]:
@@ -59,10 +66,10 @@ class Kinds:
         """
         module = self.module(kind)
         model = vars(module).get("CONFIG")
-        if not (isinstance(model, type) and issubclass(model, StrictModel)):
+        if not (isinstance(model, type) and issubclass(model, self.base)):
             raise ConfigError(
                 f"{self.group}.kind: module {module.__name__} of '{kind}' needs CONFIG, a class derived from "
-                f"runner.schema.model.StrictModel; found {model!r}"
+                f"runner.plugin.{self.base.__name__}; found {model!r}"
             )
         return model
 
@@ -121,6 +128,7 @@ class Registry(Kinds, Generic[C, P, T]):
         modules: Module name of each kind.
         guard: Function of a user-supplied part and the arguments of `build`; returns the guarded part.
         default: Kind of a config without `kind`; None if `kind` must be given.
+        base: Base class of the config of each kind.
     """
 
     def __init__(
@@ -129,8 +137,9 @@ class Registry(Kinds, Generic[C, P, T]):
         modules: Mapping[str, str],
         guard: Callable[Concatenate[T, C, P], T] | None = None,
         default: str | None = None,
+        base: type[StrictModel] = StrictModel,
     ) -> None:
-        super().__init__(group, modules, default)
+        super().__init__(group, modules, default, base)
         self.guard = guard
 
     def build(self, config: C, *args: P.args, **kwargs: P.kwargs) -> T:

@@ -3,8 +3,6 @@
 import json
 import re
 from collections.abc import Sequence
-from dataclasses import dataclass
-from functools import cached_property
 from typing import Any
 
 import numpy as np
@@ -15,41 +13,25 @@ from runner.base.errors import RunnerError
 from runner.base.machine import read_machine
 from runner.base.quantities import above_rounding, number, quantity, with_powers
 from runner.caveats.rounding_growth import SENSITIVE, STEP
-from runner.reporting.added_sections import added_sections, make_sections
 from runner.reporting.document import Block, Code, Cover, Document, Notice, Provenance, Section, Table, Text
 from runner.reporting.figures import before_failure, cover, desired_motion, playback, torque_and_error
 from runner.reporting.markup import literal
 from runner.reporting.metric_titles import capital, key_metrics, title
 from runner.reporting.nearest_limit import nearest_to_limit
 from runner.reporting.plant_step import describe_plant, percent
+from runner.reporting.sections import RunSubject, added_sections, make_sections
 from runner.reporting.spec_blocks import spec_abstract, spec_blocks
 from runner.reporting.sweep.stability import UNSTABLE
 from runner.reporting.table import Column, numbers
 from runner.reporting.words import PLANT, in_words, join_values
 from runner.store import Run
 from runner.store.baselines import check_run, find_shipped
-from runner.sweeps.changes import Changes, changed_keys, changed_rules
+from runner.sweeps.changes import Changes, changed_rules
 
 _KEY_METRICS = 4
 _AT_REST = 4.0  # times the settling time, after which an arm is taken to rest
 _KEY_AND_VALUE = (Column("key", "code"), Column("value", "code"))
 _LEVELS = {"0.01": "1 %", "0.99": "99 %"}  # quantiles that a table has room for
-
-
-@dataclass(frozen=True)
-class RunSubject:
-    """A stored run as its report looks at it: the subject of the sections of the report.
-
-    Attributes:
-        run: The stored run.
-    """
-
-    run: Run
-
-    @cached_property
-    def changed(self) -> Changes | None:
-        """The keys that differ from those of the run's groups; see changed_keys."""
-        return changed_keys(self.run)
 
 
 def run_document(run: Run) -> Document:

@@ -2,8 +2,7 @@
 
 import shlex
 from collections.abc import Sequence
-from dataclasses import dataclass, replace
-from functools import cached_property
+from dataclasses import replace
 
 import numpy as np
 from numpy.typing import NDArray
@@ -12,9 +11,7 @@ from runner.base.arrays import FloatArray
 from runner.base.dotted_keys import split_override
 from runner.base.quantities import in_one_unit
 from runner.base.sanitize import few, one_line
-from runner.reporting.added_sections import added_sections, make_sections
 from runner.reporting.answer_map import make_map
-from runner.reporting.answers import Answer
 from runner.reporting.challenge.beside import scope_line
 from runner.reporting.comparison.pairs import label_text
 from runner.reporting.comparison.sweeps import NOISE_ALONE, noise_alone
@@ -22,7 +19,7 @@ from runner.reporting.conditions import conditions_of
 from runner.reporting.document import Document, Provenance, RunList, Section, Text
 from runner.reporting.limits import limiting_joint
 from runner.reporting.markup import literal
-from runner.reporting.sentences import sentences
+from runner.reporting.sections import added_sections, make_sections
 from runner.reporting.sweep import distributions, effects, maps, spec, tradeoff
 from runner.reporting.sweep.cells import (
     axes_section,
@@ -35,14 +32,13 @@ from runner.reporting.sweep.question import (
     answer_blocks,
     asked_axis,
     causes,
-    find_answers,
     made_equal,
     pairs_section,
     range_told,
     too_few,
 )
 from runner.reporting.sweep.stability import causes_of_failure, remedies
-from runner.reporting.sweep.subject import Subject, choose
+from runner.reporting.sweep.subject import Subject, SweepSubject, choose
 from runner.reporting.words import join_values
 from runner.store import Sweep
 from runner.sweeps.measurements import Measurements, measure_sweep
@@ -54,34 +50,6 @@ MOST_RUNS = 5000
 _MOST_VALUES = 100  # of what made the runs
 _MOST_CHOICES = 4  # that the title names
 _NAMED = 3  # cells that failed, on the first screen
-
-
-@dataclass(frozen=True)
-class SweepSubject(Subject):
-    """A stored sweep as its report looks at it: the subject of the sections of the report.
-
-    Attributes:
-        sweep: The stored sweep.
-        runs_address: Address of the folder of runs, seen from the report, ending in a slash.
-    """
-
-    sweep: Sweep
-    runs_address: str = ""
-
-    @cached_property
-    def answers(self) -> list[Answer]:
-        """The answers to the question of the sweep."""
-        return find_answers(self)
-
-    @cached_property
-    def texts(self) -> list[str]:
-        """The answers in sentences."""
-        return sentences(self.answers)
-
-    @property
-    def is_compared(self) -> bool:
-        """True if the sweep has an axis and a metric to compare."""
-        return bool(self.metrics and self.axes)
 
 
 def sweep_document(sweep: Sweep, metrics: Sequence[str] = (), runs_address: str = "") -> Document:

@@ -12,7 +12,6 @@ import numpy as np
 from runner.base.arrays import FloatArray
 from runner.base.quantities import number, quantity
 from runner.plugins.metric_units import units
-from runner.reporting.added_sections import make_sections
 from runner.reporting.answers import CHOSEN, Answer
 from runner.reporting.challenge.beside import scope_line
 from runner.reporting.charts.figure import spaced_indices
@@ -22,6 +21,7 @@ from runner.reporting.figures import cover
 from runner.reporting.markup import literal
 from runner.reporting.metric_titles import metric_label, title
 from runner.reporting.overlaid_runs import Level
+from runner.reporting.sections import make_sections
 from runner.reporting.sentences import sentences
 from runner.reporting.sweep.cells import caveats_section, failed_table
 from runner.reporting.sweep.distributions import motion_blocks

@@ -1,17 +1,40 @@
-"""Sections of a report: those that the report lists, and those of plug-ins."""
+"""Sections of a report: their subject, the sections that a report lists, and those of plug-ins."""
 
 import copy
 from collections.abc import Callable, Iterable, Iterator
-from dataclasses import replace
-from typing import Any, Literal, TypeVar
+from dataclasses import dataclass, replace
+from functools import cached_property
+from typing import TYPE_CHECKING, Any, Literal, TypeVar
 
 from runner.base.errors import RunnerError, describe_part_error
 from runner.plugins.discovery import added_parts, load
 from runner.plugins.guard import place
 from runner.reporting.consistency import make_consistent
 from runner.reporting.document import Document, Notice, Section
+from runner.store import Run
+
+if TYPE_CHECKING:
+    from runner.sweeps.changes import Changes
 
 S = TypeVar("S")
+
+
+@dataclass(frozen=True)
+class RunSubject:
+    """A stored run as its report looks at it: the subject of the sections of the report.
+
+    Attributes:
+        run: The stored run.
+    """
+
+    run: Run
+
+    @cached_property
+    def changed(self) -> "Changes | None":
+        """The keys that differ from those of the run's groups; see changed_keys."""
+        from runner.sweeps.changes import changed_keys  # Hydra, which plug-ins do without
+
+        return changed_keys(self.run)
 
 
 def make_sections(functions: Iterable[Callable[[S], Section | None]], subject: S) -> list[Section]:
@@ -45,19 +68,19 @@ def _added(plugin: str, module: str, name: str, subject: Any) -> Iterator[Sectio
 
 
 def _check(made: Any, function: Callable[..., Any]) -> None:
-    """Check the result of a plug-in by a report of this section alone.
+    """Check the result of a plug-in by a report with only this section.
 
     Raises:
-        RunnerError: if it is no section, or cannot be shown; the message contains the file and the line.
+        RunnerError: if it is not a section, or cannot be shown; the message contains the file and the line.
     """
     if not isinstance(made, Section):
         raise RunnerError(f"{place(function)} gave {made!r:.200}; it must be a Section or None")
     from runner.reporting.render import render_html, render_pdf  # Typst and Jinja, which printed results do without
 
     try:
-        alone = make_consistent(Document("", "", "", [made], ""))
-        render_html(alone)
-        render_pdf(alone)
+        report = make_consistent(Document("", "", "", [made], ""))
+        render_html(report)
+        render_pdf(report)
     except Exception as error:
         fault = f"{type(error).__name__}: {error}"
         raise RunnerError(f"{place(function)} gave a section that cannot be shown: {fault:.300}") from error
