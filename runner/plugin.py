@@ -14,12 +14,14 @@ These names are stable: a change of one is in the changelog. Other modules of `r
   `distance_to_curve` help.
 - Environments derive from `Environment`.
 - Model errors: `with_models` replaces the models of a robot, `scale_model` scales a model.
+- Calibrations: `build` receives a `Bench`; the procedure has the methods of `Procedure` and returns an `Outcome`.
 - Metrics: `evaluate` receives a `Trace` and a `MetricContext`.
 - Sections of reports: a function of a `RunSubject` or a `SweepSubject` returns a `Section` of blocks: `Text`, `Items`,
   `Code`, `Notice`, `Formula`, `Table` with `Column`s, `Curves` with `Panel`s of `Series`, and `Maps` of `Map`s.
 """
 
 from runner.base.trace import Trace
+from runner.calibration.procedure import Bench, Outcome, Procedure
 from runner.controllers.controller import Controller, Loop, PositionController
 from runner.controllers.stability import delay_limit, force_loop_limit
 from runner.controllers.torque_law import TorqueLaw
@@ -56,6 +58,7 @@ from runner.trajectories.motion import quintic_blend
 from runner.trajectories.trajectory import OfTip, Trajectory
 
 __all__ = [
+    "Bench",
     "Code",
     "Column",
     "Controller",
@@ -70,10 +73,12 @@ __all__ = [
     "MetricContext",
     "Notice",
     "OfTip",
+    "Outcome",
     "Panel",
     "Plant",
     "PositionController",
     "PositionPlant",
+    "Procedure",
     "Robot",
     "RobotModel",
     "RunSubject",

@@ -41,17 +41,12 @@ class Kinds:
         group: Name of the config group, such as "controller".
         modules: Module name of each kind.
         default: Kind of a config without `kind`; None if `kind` must be given.
-        base: Base class of the config of each kind.
     """
 
-    def __init__(
-        self,
-        group: str,
-        modules: Mapping[str, str],
-        default: str | None = None,
-        base: type[StrictModel] = StrictModel,
-    ) -> None:
-        self.group, self.default, self.base = group, default, base
+    base: type[StrictModel] = StrictModel  # of the config of each kind
+
+    def __init__(self, group: str, modules: Mapping[str, str], default: str | None = None) -> None:
+        self.group, self.default = group, default
         self._modules = dict(modules)
 
     def names(self) -> list[str]:
@@ -128,7 +123,6 @@ class Registry(Kinds, Generic[C, P, T]):
         modules: Module name of each kind.
         guard: Function of a user-supplied part and the arguments of `build`; returns the guarded part.
         default: Kind of a config without `kind`; None if `kind` must be given.
-        base: Base class of the config of each kind.
     """
 
     def __init__(
@@ -137,9 +131,8 @@ class Registry(Kinds, Generic[C, P, T]):
         modules: Mapping[str, str],
         guard: Callable[Concatenate[T, C, P], T] | None = None,
         default: str | None = None,
-        base: type[StrictModel] = StrictModel,
     ) -> None:
-        super().__init__(group, modules, default, base)
+        super().__init__(group, modules, default)
         self.guard = guard
 
     def build(self, config: C, *args: P.args, **kwargs: P.kwargs) -> T:
@@ -175,6 +168,5 @@ class Registry(Kinds, Generic[C, P, T]):
         except RunnerError:
             raise
         except Exception as error:
-            raise ConfigError(
-                f"{self.group}.kind: '{config.kind}' cannot be built: {describe_part_error(error)}"
-            ) from error
+            fault = f"'{config.kind}' cannot be built: {describe_part_error(error)}"
+            raise ConfigError(f"{self.group}.kind: {fault}") from error

@@ -6,7 +6,7 @@ from dataclasses import dataclass, replace
 from functools import cached_property
 from typing import TYPE_CHECKING, Any, Literal, TypeVar
 
-from runner.base.errors import RunnerError, describe_part_error
+from runner.base.errors import ConfigError, describe_part_error
 from runner.plugins.discovery import added_parts, load
 from runner.plugins.guard import place
 from runner.reporting.consistency import make_consistent
@@ -57,13 +57,14 @@ def _added(plugin: str, module: str, name: str, subject: Any) -> Iterator[Sectio
     try:
         members = vars(load("section", plugin, module))
         if not {"run_section", "sweep_section"} & {*members}:
-            raise RunnerError(f"section {plugin}: module {module} needs run_section or sweep_section")
+            raise ConfigError(f"section {plugin}: module {module} needs run_section or sweep_section")
         made = members[name](copy.deepcopy(replace(subject))) if name in members else None
         if made is not None:
             _check(made, members[name])
             yield made
     except Exception as error:
-        fault = str(error) if isinstance(error, RunnerError) else f"section {plugin}: {describe_part_error(error)}"
+        raised = f"section {plugin}: {describe_part_error(error)}"
+        fault = error.problems[0] if isinstance(error, ConfigError) else raised
         yield Section(f"Section {plugin}", (Notice("failure", f"The section of plug-in {plugin} failed", f"{fault}."),))
 
 
@@ -71,10 +72,10 @@ def _check(made: Any, function: Callable[..., Any]) -> None:
     """Check the result of a plug-in by a report with only this section.
 
     Raises:
-        RunnerError: if it is not a section, or cannot be shown; the message contains the file and the line.
+        ConfigError: if it is not a section, or cannot be shown; the message contains the file and the line.
     """
     if not isinstance(made, Section):
-        raise RunnerError(f"{place(function)} gave {made!r:.200}; it must be a Section or None")
+        raise ConfigError(f"{place(function)} gave {made!r:.200}; it must be a Section or None")
     from runner.reporting.render import render_html, render_pdf  # Typst and Jinja, which printed results do without
 
     try:
@@ -83,4 +84,4 @@ def _check(made: Any, function: Callable[..., Any]) -> None:
         render_pdf(report)
     except Exception as error:
         fault = f"{type(error).__name__}: {error}"
-        raise RunnerError(f"{place(function)} gave a section that cannot be shown: {fault:.300}") from error
+        raise ConfigError(f"{place(function)} gave a section that cannot be shown: {fault:.300}") from error

@@ -103,12 +103,18 @@ JOINT_TORQUE_SENSORS = Registry[KindConfig, [tuple[str, ...], int, np.random.Gen
 )
 """`build` takes the joint names, the number of readings, and a random generator."""
 
-ENDPOINT_SENSORS = Registry[KindConfig, [int, float, np.random.Generator], TipSensor](
+
+class TipSensors(Registry[KindConfig, [int, float, np.random.Generator], TipSensor]):
+    """The kinds of tip sensors."""
+
+    base = TipSensorConfig
+
+
+ENDPOINT_SENSORS = TipSensors(
     "endpoint_sensor",
     {"endpoint": "runner.sensing.endpoint"},
     Guard("endpoint_sensor", measure=Method(array(2, 3))),
     default="endpoint",
-    base=TipSensorConfig,
 )
 """`build` takes the number of measurements, the time between two in s, and a random generator."""
 
