@@ -173,8 +173,9 @@ def _measures_no_velocity(config: RunConfig) -> str | None:
 
 def _measures_no_tip_velocity(config: RunConfig) -> str | None:
     sensor = config.endpoint_sensor
-    own = isinstance(sensor, EndpointSensorConfig)
-    return _has_no_bandwidth("endpoint_sensor", sensor.velocity) if own else None
+    if not isinstance(sensor, EndpointSensorConfig):
+        return None
+    return _has_no_bandwidth("endpoint_sensor", sensor.velocity)
 
 
 def _uses_no_velocity(config: RunConfig) -> str | None:

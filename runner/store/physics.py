@@ -56,7 +56,8 @@ _TABLE = """
 
 def module_ids() -> dict[str, str]:
     """Return the id of each physics module by its file in the package, such as "robots/vibration.py"."""
-    ids, folder = {}, ""
+    ids: dict[str, str] = {}
+    folder = ""
     for word in _TABLE.split():
         name, _, own = word.partition("=")
         if word.endswith(":"):
