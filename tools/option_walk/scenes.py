@@ -5,6 +5,9 @@ from typing import Any, NamedTuple
 
 from runner.base.paths import package_dir
 from runner.config.compose.files import group_options
+from runner.plugins.registry import Kinds
+from runner.robots.mismatch import MISMATCHES
+from runner.sensing import ENDPOINT_SENSORS, JOINT_TORQUE_SENSORS, NOISES, WRIST_SENSORS
 from tools.laws import JOINT_LAWS, LAWS
 
 ENGINES: Mapping[str, Sequence[str]] = {
@@ -68,6 +71,14 @@ _OWN = (
     "noise=hysteresis", "noise=shifted", "mismatch=heavier", "mismatch=lighter", *_options("noise", "mismatch")
 )  # fmt: skip
 _SENSORS = _options("wrist_sensor", "joint_torque_sensor")
+_SENSED: Mapping[Kinds, str] = {
+    NOISES: f"{_LAW} controller=computed_torque",
+    MISMATCHES: f"{_LAW} controller=computed_torque",
+    WRIST_SENSORS: f"{_ARM} {_PUSH}",
+    JOINT_TORQUE_SENSORS: f"{_ARM} {_PUSH} disturbance_observer=momentum disturbance_observer.torque=measured",
+    ENDPOINT_SENSORS: f"{_ARM} endpoint_sensor.read_by=[macro]",
+}
+"""Run of each further kind of a sensor, whose option has the name of the kind."""
 _SHAPES = {
     "circle": "", "goal": "", "joint_quintic": "", "joint_sinusoids": "", "line": "",
     "joint_waypoints": "trajectory.configurations=[0.5,0.2,0.6,0.3]",
@@ -189,6 +200,11 @@ SCENES: Mapping[str, Scene] = {
         "endpoint_sensor.velocity=low_pass", ["endpoint_sensor"], [],
         ["endpoint_sensor=offset", *_options("endpoint_sensor")],
     ),
+    **{
+        f"{kinds.group} {kind}": Scene(f"{run} {kinds.group}={kind}", [kinds.group])
+        for kinds, run in _SENSED.items()
+        for kind in kinds.names() if kind != kinds.default and not kinds.is_user_supplied(kind)
+    },
     "notch": Scene(f"{_ARM} notch=torques", ["notch"]),
     "shaped": Scene(f"{_ARM} input_shaper=zv input_shaper.frequency=8", ["input_shaper"], [], ["input_shaper=zvd"]),
     "settled": Scene(f"{_LAW} controller=computed_torque robot.settling_band=1.0", ["robot.settling_band"]),

@@ -292,6 +292,15 @@ def run_command(overrides: Sequence[str]) -> str:
 FIRST = (_failures, _differences, _bounds, _unanswered)
 """Sections that a page shows: functions of the subject that return a section or None; plug-ins add theirs behind."""
 DETAILS = (
-    caveats_section, _axes, _effects, _pairs, _maps, _tradeoff, _distributions, _motions, _all_runs, _provenance
-)  # fmt: skip
+    caveats_section,
+    _axes,
+    _effects,
+    _pairs,
+    _maps,
+    _tradeoff,
+    _distributions,
+    _motions,
+    _all_runs,
+    _provenance,
+)
 """Sections that a page shows on a click."""
