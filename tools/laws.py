@@ -4,18 +4,13 @@ Each list of laws is a choice from LAWS by a property, so that a new law of the 
 """
 
 from dataclasses import dataclass
+from typing import Any, get_args
 
+import yaml
+
+from runner.base.paths import conf_dir
 from runner.controllers import CONTROLLERS
-
-OWN_OPTIONS = {
-    "adaptive": ("scale=uniform", "friction=false", "adaptation_gain=1e-3"),
-    "computed_torque": ("integral_gain=100",),
-    "joint_pd": ("inertia=posture",),
-    "joint_pid": ("integral_share=0.5", "anti_windup=false"),
-    "passivity": (),
-    "sliding_mode": ("boundary_layer=0.1", "switching_gain=2"),
-}
-"""Options of each law of JOINT_LAWS that the others lack, away from their defaults."""
+from runner.controllers.joint_space.joint_law import JointLawConfig
 
 
 @dataclass(frozen=True)
@@ -91,3 +86,18 @@ ARM_LAWS = tuple(
 """Laws of any arm with rigid joints and of any motion: first those that lead the tip, then those of the joints."""
 JOINT_LAWS = tuple(name for name in ARM_LAWS if LAWS[name].follows_joints)
 """Those of them that follow a joint motion."""
+
+
+def own_options(law: str) -> list[str]:
+    """Return overrides of the keys that a law of JOINT_LAWS has and the others lack, away from their defaults."""
+    defaults = yaml.safe_load((conf_dir() / "controller" / f"{law}.yaml").read_text(encoding="utf-8"))
+    fields = CONTROLLERS.config_model(law).model_fields
+    own = [key for key in fields if key not in JointLawConfig.model_fields and key != "kind"]
+    return [f"{key}={_other(defaults[key], fields[key].annotation)}" for key in own]
+
+
+def _other(value: Any, annotation: Any) -> str:
+    """Return another value of a key: the other word, truth value, or twice the number."""
+    if isinstance(value, str):
+        return next(str(word) for word in get_args(annotation) if word != value)
+    return str(not value).lower() if isinstance(value, bool) else str(2.0 * value or 1.0)

@@ -5,8 +5,7 @@ from typing import Literal
 import numpy as np
 from pydantic import NonNegativeFloat, PositiveFloat
 
-from runner.schema.model import StrictModel
-from runner.schema.units import Radians
+from runner.plugin import StrictModel, units
 
 
 class BacklashConfig(StrictModel):
@@ -20,9 +19,9 @@ class BacklashConfig(StrictModel):
     """
 
     kind: Literal["backlash"]
-    play: Radians[NonNegativeFloat]
-    resolution: Radians[PositiveFloat]
-    noise: Radians[NonNegativeFloat]
+    play: units.Radians[NonNegativeFloat]
+    resolution: units.Radians[PositiveFloat]
+    noise: units.Radians[NonNegativeFloat]
 
 
 class Backlash:

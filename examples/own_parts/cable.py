@@ -5,8 +5,7 @@ from typing import Annotated, Literal
 import numpy as np
 from pydantic import Field, NonNegativeFloat
 
-from runner.schema.model import StrictModel
-from runner.schema.units import Damping, Metres, RotaryStiffness, Stiffness
+from runner.plugin import StrictModel, units
 
 Vector = Annotated[list[float], Field(min_length=3, max_length=3)]
 
@@ -28,13 +27,13 @@ class CableConfig(StrictModel):
 
     kind: Literal["cable"]
     link: str
-    point: Metres[Vector]
-    anchor: Metres[Vector]
-    stiffness: Stiffness[NonNegativeFloat]
-    slack: Metres[NonNegativeFloat]
-    damping: Damping[NonNegativeFloat]
+    point: units.Metres[Vector]
+    anchor: units.Metres[Vector]
+    stiffness: units.Stiffness[NonNegativeFloat]
+    slack: units.Metres[NonNegativeFloat]
+    damping: units.Damping[NonNegativeFloat]
     joint: Annotated[int, Field(ge=1)]
-    bending: RotaryStiffness[NonNegativeFloat]
+    bending: units.RotaryStiffness[NonNegativeFloat]
 
 
 class Cable:

@@ -5,7 +5,7 @@ from typing import Literal
 import numpy as np
 from pydantic import FiniteFloat, NonNegativeFloat
 
-from runner.schema.model import StrictModel
+from runner.plugin import StrictModel
 
 
 class CrosstalkConfig(StrictModel):

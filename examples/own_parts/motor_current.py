@@ -5,8 +5,7 @@ from typing import Literal
 import numpy as np
 from pydantic import NonNegativeFloat, PositiveFloat
 
-from runner.schema.model import StrictModel
-from runner.schema.units import NewtonMetres
+from runner.plugin import StrictModel, units
 
 
 class MotorCurrentConfig(StrictModel):
@@ -20,7 +19,7 @@ class MotorCurrentConfig(StrictModel):
 
     kind: Literal["motor_current"]
     constant: PositiveFloat
-    resolution: NewtonMetres[NonNegativeFloat]
+    resolution: units.NewtonMetres[NonNegativeFloat]
 
 
 class MotorCurrent:

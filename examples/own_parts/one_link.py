@@ -5,9 +5,7 @@ from typing import Annotated, Literal
 import numpy as np
 from pydantic import Field, NonNegativeFloat, PositiveFloat
 
-from runner.robots.mismatch import scale_model
-from runner.robots.robot import with_models
-from runner.schema.model import StrictModel
+from runner.plugin import StrictModel, scale_model, with_models
 
 
 class OneLinkConfig(StrictModel):

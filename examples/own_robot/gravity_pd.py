@@ -5,8 +5,7 @@ from typing import Literal
 import numpy as np
 from pydantic import PositiveFloat
 
-from runner.controllers import Loop
-from runner.schema.model import StrictModel
+from runner.plugin import Loop, StrictModel
 
 
 class GravityPDConfig(StrictModel):

@@ -6,9 +6,7 @@ from typing import Literal
 import numpy as np
 from pydantic import Field, PositiveFloat, PositiveInt
 
-from runner.schema.model import StrictModel
-from runner.trajectories.geometry import distance_to_curve
-from runner.trajectories.motion import quintic_blend
+from runner.plugin import StrictModel, distance_to_curve, quintic_blend
 
 
 class HelixConfig(StrictModel):

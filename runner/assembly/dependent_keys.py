@@ -21,6 +21,7 @@ from runner.environments.push import PushConfig
 from runner.plants.decoupled import TorquePlantConfig
 from runner.plants.friction_law import joint_friction
 from runner.robots.mismatch import MISMATCHES
+from runner.sensing.endpoint import EndpointSensorConfig
 from runner.sensing.velocity import Velocity, gains
 
 _FRICTION = "robot.friction"
@@ -171,7 +172,10 @@ def _measures_no_velocity(config: RunConfig) -> str | None:
 
 
 def _measures_no_tip_velocity(config: RunConfig) -> str | None:
-    return _has_no_bandwidth("endpoint_sensor", config.endpoint_sensor.velocity)
+    sensor = config.endpoint_sensor
+    if not isinstance(sensor, EndpointSensorConfig):
+        return None
+    return _has_no_bandwidth("endpoint_sensor", sensor.velocity)
 
 
 def _uses_no_velocity(config: RunConfig) -> str | None:

@@ -24,7 +24,7 @@ from runner.robots.model import RobotModel
 from runner.robots.robot import Robot
 from runner.sensing import NOISES
 from runner.sensing.encoders import EncoderNoise
-from runner.sensing.endpoint import EndpointSensorConfig
+from runner.sensing.endpoint import TipSensorConfig
 from runner.sensing.force_torque import ForceTorqueConfig
 from runner.trajectories import Trajectory
 from runner.trajectories.joint_motion import TipOfJoints
@@ -80,7 +80,7 @@ class RunConfig:
     torque_limits: TorqueLimits
     wrist_sensor: KindConfig
     joint_torque_sensor: KindConfig | None
-    endpoint_sensor: EndpointSensorConfig
+    endpoint_sensor: TipSensorConfig
     mismatch: KindConfig
     disturbance_observer: DisturbanceObserverConfig
     notch: NotchConfig | None

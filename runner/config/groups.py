@@ -18,8 +18,7 @@ from runner.plants import PLANTS
 from runner.plugins.registry import Kinds
 from runner.robots.mismatch import MISMATCHES
 from runner.schema.model import StrictModel
-from runner.sensing import JOINT_TORQUE_SENSORS, NOISES, WRIST_SENSORS
-from runner.sensing.endpoint import EndpointSensorConfig
+from runner.sensing import ENDPOINT_SENSORS, JOINT_TORQUE_SENSORS, NOISES, WRIST_SENSORS
 from runner.trajectories import TRAJECTORIES
 
 GROUPS: Mapping[str, Kinds | type[StrictModel]] = {
@@ -31,7 +30,7 @@ GROUPS: Mapping[str, Kinds | type[StrictModel]] = {
     "torque_limits": TorqueLimitsConfig,
     "wrist_sensor": WRIST_SENSORS,
     "joint_torque_sensor": JOINT_TORQUE_SENSORS,
-    "endpoint_sensor": EndpointSensorConfig,
+    "endpoint_sensor": ENDPOINT_SENSORS,
     "mismatch": MISMATCHES,
     "disturbance_observer": DisturbanceObserverConfig,
     "input_shaper": InputShaperConfig,

@@ -25,10 +25,10 @@ if TYPE_CHECKING:
     from importlib.metadata import EntryPoint
 
 GROUPS = (
-    "calibration", "controller", "environment", "joint_torque_sensor", "metric", "mismatch", "noise", "plant",
-    "trajectory", "wrist_sensor",
+    "calibration", "controller", "endpoint_sensor", "environment", "joint_torque_sensor", "metric", "mismatch", "noise",
+    "plant", "section", "trajectory", "wrist_sensor",
 )  # fmt: skip
-"""Groups in which a part can be added."""
+"""Groups in which a part can be added; runs do not contain a section of a report."""
 
 _VARIABLE = "RUNNER_PLUGINS"  # one part a line, with absolute paths of files; worker processes inherit it
 
@@ -103,8 +103,9 @@ def added_parts(group: str) -> "tuple[EntryPoint, ...]":
 
 
 def has_users_parts() -> bool:
-    """Return True if user-supplied parts are in use; the parts of built-in studies do not count."""
-    return any(not point.value.startswith("runner.") for group in GROUPS for point in added_parts(group))
+    """Return True if user-supplied parts of runs are in use; the parts of built-in studies do not count."""
+    points = (point for group in GROUPS if group != "section" for point in added_parts(group))
+    return any(not point.value.startswith("runner.") for point in points)
 
 
 def functions_in_use(group: str) -> "tuple[EntryPoint, ...]":

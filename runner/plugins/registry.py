@@ -43,6 +43,8 @@ class Kinds:
         default: Kind of a config without `kind`; None if `kind` must be given.
     """
 
+    base: type[StrictModel] = StrictModel  # of the config of each kind
+
     def __init__(self, group: str, modules: Mapping[str, str], default: str | None = None) -> None:
         self.group, self.default = group, default
         self._modules = dict(modules)
@@ -59,10 +61,10 @@ class Kinds:
         """
         module = self.module(kind)
         model = vars(module).get("CONFIG")
-        if not (isinstance(model, type) and issubclass(model, StrictModel)):
+        if not (isinstance(model, type) and issubclass(model, self.base)):
             raise ConfigError(
                 f"{self.group}.kind: module {module.__name__} of '{kind}' needs CONFIG, a class derived from "
-                f"runner.schema.model.StrictModel; found {model!r}"
+                f"runner.plugin.{self.base.__name__}; found {model!r}"
             )
         return model
 
@@ -166,6 +168,5 @@ class Registry(Kinds, Generic[C, P, T]):
         except RunnerError:
             raise
         except Exception as error:
-            raise ConfigError(
-                f"{self.group}.kind: '{config.kind}' cannot be built: {describe_part_error(error)}"
-            ) from error
+            fault = f"'{config.kind}' cannot be built: {describe_part_error(error)}"
+            raise ConfigError(f"{self.group}.kind: {fault}") from error

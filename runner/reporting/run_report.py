@@ -19,13 +19,14 @@ from runner.reporting.markup import literal
 from runner.reporting.metric_titles import capital, key_metrics, title
 from runner.reporting.nearest_limit import nearest_to_limit
 from runner.reporting.plant_step import describe_plant, percent
+from runner.reporting.sections import RunSubject, added_sections, make_sections
 from runner.reporting.spec_blocks import spec_abstract, spec_blocks
 from runner.reporting.sweep.stability import UNSTABLE
 from runner.reporting.table import Column, numbers
 from runner.reporting.words import PLANT, in_words, join_values
 from runner.store import Run
 from runner.store.baselines import check_run, find_shipped
-from runner.sweeps.changes import Changes, changed_keys, changed_rules
+from runner.sweeps.changes import Changes, changed_rules
 
 _KEY_METRICS = 4
 _AT_REST = 4.0  # times the settling time, after which an arm is taken to rest
@@ -35,16 +36,13 @@ _LEVELS = {"0.01": "1 %", "0.99": "99 %"}  # quantiles that a table has room for
 
 def run_document(run: Run) -> Document:
     """Return the report on a stored run: its name, the moving arm and four numbers first."""
-    changed = changed_keys(run)
+    subject = RunSubject(run)
+    own = make_sections(SECTIONS, subject)
     return Document(
         title=run_name(run),
-        subtitle=_subtitle(run, changed),
+        subtitle=_subtitle(run, subject.changed),
         abstract=literal(_abstract(run)),
-        sections=[
-            Section("The run", run_blocks(run)),
-            Section("Config", config_blocks(run, changed)),
-            Section("Provenance", (provenance([run]),)),
-        ],
+        sections=[own[0], *added_sections("run_section", subject), *own[1:]],
         date=str(run.provenance["date"]),
         cover=_cover(run) if (~np.isnan(run.joints("q"))).all(axis=1).sum() > 1 else None,
         notes=[literal(f"Caveats: {', '.join(_spaced(caveat['rule']) for caveat in run.caveats)}.")]
@@ -52,6 +50,22 @@ def run_document(run: Run) -> Document:
         else [],
         key_numbers=[*key_metrics(run, _KEY_METRICS), *filter(None, [nearest_to_limit(run)])],
     )
+
+
+def _results(subject: RunSubject) -> Section:
+    return Section("The run", run_blocks(subject.run))
+
+
+def _config(subject: RunSubject) -> Section:
+    return Section("Config", config_blocks(subject.run, subject.changed))
+
+
+def _provenance(subject: RunSubject) -> Section:
+    return Section("Provenance", (provenance([subject.run]),))
+
+
+SECTIONS = (_results, _config, _provenance)
+"""Sections: functions of the subject that return a section or None; plug-ins add theirs behind the first."""
 
 
 def run_name(run: Run) -> str:

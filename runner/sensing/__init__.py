@@ -9,8 +9,9 @@ import numpy as np
 from runner.base.arrays import FloatArray
 from runner.base.errors import SimulationError
 from runner.plugins.features import Features, read_features
-from runner.plugins.guard import Asked, Guard, Method, checked, like, place
+from runner.plugins.guard import Asked, Guard, Method, array, checked, like, place
 from runner.plugins.registry import KindConfig, Registry
+from runner.sensing.endpoint import TipSensorConfig
 
 
 class Encoders(Protocol):
@@ -40,6 +41,19 @@ class TorqueSensors(Protocol):
 
     def read(self, tick: int, torque: FloatArray) -> FloatArray:
         """Return the readings of the mean torques on the links; see JointTorqueSensor.read."""
+        ...
+
+
+class TipSensor(Protocol):
+    """Sensor of the tip of one control loop."""
+
+    def measure(self, number: int, tip: FloatArray) -> FloatArray:
+        """Return the measured position and velocity of the tip, shape (2, 3), in m and m/s.
+
+        Args:
+            number: Index of the measurement, from 0.
+            tip: True position and velocity of the tip in the base frame, shape (2, 3), in m and m/s.
+        """
         ...
 
 
@@ -88,6 +102,21 @@ JOINT_TORQUE_SENSORS = Registry[KindConfig, [tuple[str, ...], int, np.random.Gen
     default="joint_torque",
 )
 """`build` takes the joint names, the number of readings, and a random generator."""
+
+
+class TipSensors(Registry[KindConfig, [int, float, np.random.Generator], TipSensor]):
+    """The kinds of tip sensors."""
+
+    base = TipSensorConfig
+
+
+ENDPOINT_SENSORS = TipSensors(
+    "endpoint_sensor",
+    {"endpoint": "runner.sensing.endpoint"},
+    Guard("endpoint_sensor", measure=Method(array(2, 3))),
+    default="endpoint",
+)
+"""`build` takes the number of measurements, the time between two in s, and a random generator."""
 
 
 def values_by_joint(group: str, sensor: KindConfig, units: Mapping[str, Mapping[str, str]]) -> KindConfig | None:

@@ -13,24 +13,44 @@ from runner.controllers.controller import ControlLaw
 from runner.plants import Plant, options_of
 from runner.plugins.registry import KindConfig
 from runner.robots.model import RobotModel
-from runner.sensing import JOINT_TORQUE_SENSORS, NOISES, WRIST_SENSORS, Encoders, TorqueSensors, WristSensor
-from runner.sensing.endpoint import EndpointSensor
+from runner.sensing import (
+    ENDPOINT_SENSORS,
+    JOINT_TORQUE_SENSORS,
+    NOISES,
+    WRIST_SENSORS,
+    Encoders,
+    TipSensor,
+    TorqueSensors,
+    WristSensor,
+)
+from runner.sensing.endpoint import EndpointTicks
 from runner.sensing.streams import COMPUTATION, JOINT_TORQUES, TIP
 from runner.simulation.recorder import CommandTiming
 
 
 class MeasuredTip:
-    """Correction of a control loop's desired motion, so that it tracks the measured tip instead of the encoders' tip.
+    r"""Correction of a control loop's desired motion, so that it tracks the measured tip instead of the encoders' tip.
+
+    .. math:: \Delta = y - p(\hat q), \qquad \dot\Delta = \dot y - J(\hat q) \hat{\dot q}
+
+    If a control law moves the tip according to the encoders to x_d - Delta, the measured tip is at x_d. So every law
+    can use the sensor, and the measurement corrects any bending between encoders and tip. Measurement and encoders
+    refer to the same instant. Their difference is available after the delay and is constant until the next one; it is 0
+    before the first one.
 
     Args:
         sensor: The sensor, with a draw for each measurement.
+        times: Times of the measurements.
         plant: The plant, for the true tip.
         true: Model of the true robot.
         nominal: Nominal model.
     """
 
-    def __init__(self, sensor: EndpointSensor, plant: Plant, true: RobotModel, nominal: RobotModel) -> None:
-        self._sensor, self._plant, self._true, self._nominal = sensor, plant, true, nominal
+    def __init__(
+        self, sensor: TipSensor, times: EndpointTicks, plant: Plant, true: RobotModel, nominal: RobotModel
+    ) -> None:
+        self._sensor, self._times, self._plant, self._true, self._nominal = sensor, times, plant, true, nominal
+        self._differences: list[FloatArray] = []
 
     def correct(self, tick: int, q: FloatArray, dq: FloatArray, desired: FloatArray) -> FloatArray:
         """Return the desired motion for the tip as computed from the encoders.
@@ -41,12 +61,15 @@ class MeasuredTip:
             dq: Measured joint velocities, shape (nq,), in rad/s.
             desired: Desired motion of the tip, shape (3, 3): position, velocity, acceleration.
         """
-        if self._sensor.due(tick):
+        if tick % self._times.every == 0:
             plant = self._plant
             true = plant.tip_motion() if plant.bends else _moves(self._true, plant.q, plant.dq)
-            self._sensor.measure(tick, true, _moves(self._nominal, q, dq))
+            measured = self._sensor.measure(tick // self._times.every, true)
+            self._differences.append(measured - _moves(self._nominal, q, dq))
+        known = (tick - self._times.late) // self._times.every
         corrected = desired.copy()
-        corrected[:2] -= self._sensor.correction(tick)
+        if known >= 0:
+            corrected[:2] -= self._differences[known]
         return corrected
 
 
@@ -55,23 +78,18 @@ def make_measured_tips(closed: ClosedLoop, config: RunConfig, repetition: int) -
 
     The noise depends only on (seed, repetition) and the loop's index, and does not change other draws.
     """
-    ticks = endpoint_ticks(config)
-    return {
-        loop.name: MeasuredTip(
-            EndpointSensor(
-                closed.ticks // closed.every(loop) + 1,
-                loop.period,
+    ticks, made = endpoint_ticks(config), {}
+    for place, loop in enumerate(closed.loops):
+        if loop.name in ticks:
+            times = ticks[loop.name]
+            sensor = ENDPOINT_SENSORS.build(
                 config.endpoint_sensor,
-                ticks[loop.name],
+                -(-(closed.ticks // closed.every(loop) + 1) // times.every),
+                loop.period * times.every,
                 np.random.default_rng([config.settings.seed, repetition, TIP, place]),
-            ),
-            closed.plant,
-            closed.robot.model,
-            closed.nominal.model,
-        )
-        for place, loop in enumerate(closed.loops)
-        if loop.name in ticks
-    }
+            )
+            made[loop.name] = MeasuredTip(sensor, times, closed.plant, closed.robot.model, closed.nominal.model)
+    return made
 
 
 def _moves(arm: RobotModel, q: FloatArray, dq: FloatArray) -> FloatArray:

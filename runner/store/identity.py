@@ -68,7 +68,7 @@ _key_text = lru_cache(maxsize=256)(_sorted_text)
 
 def _parts(resolved: Mapping[str, Any]) -> set[tuple[str, str]]:
     """Return name and module of the plug-ins that a run uses: those whose kind the config names, and all metrics."""
-    points = [(group, point) for group in GROUPS for point in added_parts(group)]
+    points = [(group, point) for group in GROUPS if group != "section" for point in added_parts(group)]
     if not points:
         return set()
     kinds = {str(resolved["kind"])} if "kind" in resolved else set()

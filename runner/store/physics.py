@@ -5,7 +5,8 @@ control law, plant and sensors (`assembly`), simulates, calibrates or measures. 
 the resolved config, which the hash contains. Some only reject, report or store something. The rest use finished runs:
 caveat rules, statistics, store, reports, commands.
 
-Each module has an id. After a move, change the module's folder in the table and keep its id: no hash changes.
+Each module has an id, by default its name. After a move or a renaming, keep the id by a row of the table: no hash
+changes.
 """
 
 import ast
@@ -18,56 +19,54 @@ from runner.base.cache import read_answer, write_answer
 from runner.base.paths import package_dir
 from runner.store import syntax
 
-# Folders and their modules. A module's id follows "="; without "=" it is the module's name.
+# Folders and their modules. A module's id follows "="; without "=" it is the module's name. "*" means all modules of
+# the folder, except one after "-".
 _TABLE = """
     assembly: arms assemble=assembly closed_loop=loop.closed_loop cross_checks desired_motion drawn_loops flexibility
         input_shaping run_config=run timing validation wall=loop.wall
-    assembly/compiled: commands law loop_program loops
+    assembly/compiled: *
     base: portable trace
-    calibration: __init__=calibration.__init__ gravity=calibration.gravity orientations procedure
+    calibration: * __init__=calibration.__init__ gravity=calibration.gravity
         tool_centre_point=calibration.tool_centre_point tool_direction=calibration.tool_direction
-        uncertainty=repeatability weighing
+        uncertainty=repeatability
     caveats: integration_error=plant_error rounding_growth=rounding
     config: calibration groups input_shaper parsing robot=config.robot robot_files settings torque_limits
-    controllers: __init__=controllers.__init__ controller=controllers.controller
-        disturbance_observer=controllers.disturbance_observer notch=controllers.notch torque_filter torque_law
-    controllers/force: admittance admittance_filter force_reading=controllers.force_reading hybrid_force impedance
-        tip_force
-    controllers/joint_space: adaptive computed_torque function_law iterative_learning joint_law joint_pd joint_pid
-        motor_pd passivity sliding_mode
-    controllers/kinematic: differential_inverse_kinematics limited_motion resolved_rate
-    controllers/macro_mini: inertial_damping macro_mini stage_loops
-    controllers/operational_space: operational_space tip_task whole_body
-    environments: __init__=environments.__init__ external_wrench=interaction free hand push wall
-    metrics: __init__=metrics.__init__ contact=metrics.contact effort family positioning reaching summary tracking
-    plants: __init__=plants.__init__ bullet bullet_engine bullet_links bullet_servers compiled_bullet compiled_friction
-        compiled_motion=compiled.motion computation=plants.computation decoupled flexibility=plants.flexibility
-        flexible_config flexible_joints=plants.flexible_joints friction friction_law kinematic motor_limits mujoco
-        plant=plants.plant rk4 rk4_flexible_links runge_kutta servo stepped_bullet whole_motion wrappers=touched
+    controllers: * -stability __init__=controllers.__init__ controller=controllers.controller
+        disturbance_observer=controllers.disturbance_observer notch=controllers.notch
+    controllers/force: * force_reading=controllers.force_reading
+    controllers/joint_space: *
+    controllers/kinematic: *
+    controllers/macro_mini: *
+    controllers/operational_space: *
+    environments: * __init__=environments.__init__ external_wrench=interaction
+    metrics: * __init__=metrics.__init__ contact=metrics.contact
+    plants: * -agreement __init__=plants.__init__ compiled_motion=compiled.motion computation=plants.computation
+        flexibility=plants.flexibility flexible_joints=plants.flexible_joints plant=plants.plant wrappers=touched
     plugins: features guard metric_units registry
-    robots: __init__=robots.__init__ canonical description drawn elements file_extensions inertials
-        inverse_kinematics joint_dynamics mismatch mjcf mjcf_files mjcf_motors mjcf_urdf model mounting
-        robot=robots.robot task_space tree vibration workspace
+    robots: * __init__=robots.__init__ robot=robots.robot
     schema: values
-    sensing: __init__=sensing.__init__ encoders endpoint=sensing.endpoint force_torque joint_torque streams velocity
-        wrench
+    sensing: * __init__=sensing.__init__ endpoint=sensing.endpoint
     simulation: batch by_ticks calibration=calibration_job calibration_config=checked_calibration contact=loop.contact
         loop=simulation recorder results run=job sensors
-    symbolic: algebra arm backend bullet_step code engine expression maths=controllers.maths program regressor structure
-        tangent vectors=compiled.vectors
-    trajectories: __init__=trajectories.__init__ circle from_file geometry goal joint_motion=trajectories.joint_motion
-        joint_quintic joint_sinusoids joint_waypoints line lissajous motion quintic shaped splines square
-        trajectory=trajectories.trajectory waypoints
+    symbolic: * maths=controllers.maths vectors=compiled.vectors
+    trajectories: * __init__=trajectories.__init__ joint_motion=trajectories.joint_motion
+        trajectory=trajectories.trajectory
 """  # fmt: skip
 
 
 def module_ids() -> dict[str, str]:
     """Return the id of each physics module by its file in the package, such as "robots/vibration.py"."""
-    ids, folder = {}, ""
+    ids: dict[str, str] = {}
+    folder = ""
     for word in _TABLE.split():
         name, _, own = word.partition("=")
         if word.endswith(":"):
             folder = "" if word == ".:" else f"{word[:-1]}/"
+        elif word == "*":
+            modules = sorted(path.stem for path in (package_dir() / folder).glob("*.py"))
+            ids |= {f"{folder}{module}.py": module for module in modules if module != "__init__"}
+        elif word.startswith("-"):
+            del ids[f"{folder}{word[1:]}.py"]
         else:
             ids[f"{folder}{name}.py"] = own or name
     return ids

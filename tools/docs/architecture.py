@@ -76,14 +76,16 @@ def summary(path: Path) -> str:
 
 
 def folder(layer: str) -> Path:
-    """Return the folder of a package."""
-    return _ROOT.joinpath(*layer.split("."))
+    """Return the folder of a package, or the file of a module."""
+    path = _ROOT.joinpath(*layer.split("."))
+    return path if path.is_dir() else path.with_suffix(".py")
 
 
 def imports(layer: str, known: list[str]) -> set[str]:
     """Return the packages that a package imports, those of imports that point up left out."""
     found = set()
-    for path in folder(layer).rglob("*.py"):
+    place = folder(layer)
+    for path in place.rglob("*.py") if place.is_dir() else [place]:
         statements = _IMPORT.findall(_QUOTED.sub("", path.read_text(encoding="utf-8")))
         for node in ast.parse("\n".join(statements)).body:
             names = [f"{node.module}.{each.name}" for each in node.names] if isinstance(node, ast.ImportFrom) else []
@@ -151,7 +153,7 @@ def _text(layer: str) -> str:
 
 
 def _rows(inside: Path, indent: str) -> Iterator[str]:
-    for path in sorted(inside.iterdir()):
+    for path in sorted(inside.iterdir()) if inside.is_dir() else ():
         package = (path / "__init__.py").is_file()
         if package or (path.suffix == ".py" and path.stem not in ("__init__", "__main__")):
             yield f"{indent}- `{path.stem}{'/' if package else ''}`: {summary(path)}"

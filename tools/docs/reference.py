@@ -58,7 +58,7 @@ A number may have a unit, in YAML and on the command line: `controller.period=20
 sweep store the number in SI units, so `controller.period=0.02` is the same run. `runner` rejects a unit that does not
 fit its key. Quote characters that the shell or Hydra interprets: `"gravity='9.8m/s^2'"`. A key of joints takes angles
 for revolute joints and lengths for prismatic ones; one value for both kinds has no unit. A plug-in's key has the unit
-of its type, such as `reach: Metres[PositiveFloat]`; `runner.schema.units` has these types.
+of its type, such as `reach: Metres[PositiveFloat]`; `runner.plugin.units` has these types.
 
 | Unit of the key | Accepted units |
 |---|---|

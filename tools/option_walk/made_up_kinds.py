@@ -27,8 +27,9 @@ from runner.robots.mismatch import MISMATCHES, MismatchConfig, scale_model
 from runner.robots.model import RobotModel
 from runner.robots.robot import Robot, with_models
 from runner.schema.model import StrictModel
-from runner.sensing import JOINT_TORQUE_SENSORS, NOISES, WRIST_SENSORS
+from runner.sensing import ENDPOINT_SENSORS, JOINT_TORQUE_SENSORS, NOISES, WRIST_SENSORS
 from runner.sensing.encoders import NoiseConfig
+from runner.sensing.endpoint import EndpointSensorConfig
 from runner.sensing.joint_torque import JointTorqueConfig
 from runner.trajectories import TRAJECTORIES
 from runner.trajectories.motion import quintic_motion
@@ -95,6 +96,16 @@ class _Gained:
 
     def read(self, tick: int, truth: FloatArray) -> FloatArray:
         return self._gain * truth
+
+
+class _Offset:
+    """A tip sensor with a constant error."""
+
+    def __init__(self, config: Any, *_: object) -> None:
+        self._offset = config.offset
+
+    def measure(self, number: int, tip: FloatArray) -> FloatArray:
+        return np.array([tip[0] + self._offset, tip[1]])
 
 
 def _scaled(config: Any, robot: Robot, generator: np.random.Generator) -> Robot:
@@ -167,6 +178,7 @@ KINDS = (
         NOISES, "shifted", {"shift": 0.01}, {"build": lambda config, *_: _Shifted(config.shift)}, (NoiseConfig, "none")
     ),
     MadeUp(WRIST_SENSORS, "doubled", {"gain": 2.0}, {"build": _Gained}),
+    MadeUp(ENDPOINT_SENSORS, "offset", {"offset": 0.01}, {"build": _Offset}, (EndpointSensorConfig, "none")),
     MadeUp(JOINT_TORQUE_SENSORS, "weak", {"gain": 0.8}, {"build": _Gained}, (JointTorqueConfig, "ideal")),
     MadeUp(MISMATCHES, "heavier", {"factor": 1.5}, {"build": _scaled}),
     MadeUp(MISMATCHES, "lighter", {"factor": 0.5}, {"build": _scaled}, (MismatchConfig, "none")),

@@ -4,6 +4,10 @@ from collections.abc import Mapping, Sequence
 from typing import Any, NamedTuple
 
 from runner.base.paths import package_dir
+from runner.config.compose.files import group_options
+from runner.plugins.registry import Kinds
+from runner.robots.mismatch import MISMATCHES
+from runner.sensing import ENDPOINT_SENSORS, JOINT_TORQUE_SENSORS, NOISES, WRIST_SENSORS
 from tools.laws import JOINT_LAWS, LAWS
 
 ENGINES: Mapping[str, Sequence[str]] = {
@@ -56,7 +60,25 @@ _ROUGH = (
     "robot.friction.viscous=1 robot.friction.coulomb=0.5 robot.friction.static=0.8 robot.friction.asymmetry=0.1 "
     "robot.friction.stribeck_speed=0.05 robot.friction.sigmoid={level:1.0,steepness:20.0,shift:0.01}"
 )
-_OWN = "noise=hysteresis", "noise=shifted", "mismatch=heavier", "mismatch=lighter", "mismatch=sampled"
+
+
+def _options(*groups: str) -> list[str]:
+    """Return all options of some groups, so that a new kind is in their scenes."""
+    return [f"{group}={name}" for group in groups for name in group_options(group) if name != "none"]
+
+
+_OWN = (
+    "noise=hysteresis", "noise=shifted", "mismatch=heavier", "mismatch=lighter", *_options("noise", "mismatch")
+)  # fmt: skip
+_SENSORS = _options("wrist_sensor", "joint_torque_sensor")
+_SENSED: Mapping[Kinds, str] = {
+    NOISES: f"{_LAW} controller=computed_torque",
+    MISMATCHES: f"{_LAW} controller=computed_torque",
+    WRIST_SENSORS: f"{_ARM} {_PUSH}",
+    JOINT_TORQUE_SENSORS: f"{_ARM} {_PUSH} disturbance_observer=momentum disturbance_observer.torque=measured",
+    ENDPOINT_SENSORS: f"{_ARM} endpoint_sensor.read_by=[macro]",
+}
+"""Run of each further kind of a sensor, whose option has the name of the kind."""
 _SHAPES = {
     "circle": "", "goal": "", "joint_quintic": "", "joint_sinusoids": "", "line": "",
     "joint_waypoints": "trajectory.configurations=[0.5,0.2,0.6,0.3]",
@@ -76,7 +98,7 @@ SCENES: Mapping[str, Scene] = {
         "robot=macro trajectory=quintic duration=0.06 controller=computed_torque",
         ["robot.friction.viscous", "robot.friction.coulomb"],
         [],
-        [*_OWN, "noise=thesis", "environment=push", "environment=hand_guiding", "environment=spring",
+        [*_OWN, "environment=push", "environment=hand_guiding", "environment=spring",
          "environment=sticky_wall", "controller=soft_pd", "trajectory=swing", "plant=euler", "notch=torques",
          "disturbance_observer=momentum", "torque_limits=thesis"],
     ),
@@ -141,7 +163,7 @@ SCENES: Mapping[str, Scene] = {
         f"{_ARM} disturbance_observer=momentum {_PUSH} disturbance_observer.torque=measured joint_torque_sensor=ideal",
         ["disturbance_observer", "joint_torque_sensor", "environment"],
         ["environment.bandwidth"],
-        ["joint_torque_sensor=weak", "wrist_sensor=doubled"],
+        ["joint_torque_sensor=weak", "wrist_sensor=doubled", *_SENSORS],
     ),
     "shaken": Scene(f"{_ARM} {_PUSH} environment.noise=3 environment.bandwidth=50", ["environment"]),
     "guided": Scene(f"{_HELD} environment=hand_guiding environment.start_time=0.01", ["environment"]),
@@ -171,12 +193,18 @@ SCENES: Mapping[str, Scene] = {
         _ARM, ["wrist_sensor", "joint_torque_sensor", "endpoint_sensor", "disturbance_observer.torque", "plant_error",
                "noise.velocity_bandwidth", "robot.path_size", "robot.joint_error_limit",
                "controller.null_space_frequency", "robot.payload.position"],
-        [], ["wrist_sensor=mini40", "wrist_sensor=doubled", "joint_torque_sensor=ideal", "joint_torque_sensor=weak"],
+        [], ["wrist_sensor=doubled", "joint_torque_sensor=weak", *_SENSORS],
     ),
     "seen": Scene(
         f"{_ARM} endpoint_sensor.read_by=[macro] endpoint_sensor.noise=1e-4 mismatch.length=1.01 "
-        "endpoint_sensor.velocity=low_pass", ["endpoint_sensor"]
+        "endpoint_sensor.velocity=low_pass", ["endpoint_sensor"], [],
+        ["endpoint_sensor=offset", *_options("endpoint_sensor")],
     ),
+    **{
+        f"{kinds.group} {kind}": Scene(f"{run} {kinds.group}={kind}", [kinds.group])
+        for kinds, run in _SENSED.items()
+        for kind in kinds.names() if kind != kinds.default and not kinds.is_user_supplied(kind)
+    },
     "notch": Scene(f"{_ARM} notch=torques", ["notch"]),
     "shaped": Scene(f"{_ARM} input_shaper=zv input_shaper.frequency=8", ["input_shaper"], [], ["input_shaper=zvd"]),
     "settled": Scene(f"{_LAW} controller=computed_torque robot.settling_band=1.0", ["robot.settling_band"]),

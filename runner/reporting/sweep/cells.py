@@ -203,8 +203,8 @@ def _by_level(axis: Axis, failed: NDArray[np.bool_]) -> list[list[str]]:
     return [[axis.name, axis.text(level), f"{lost[level]} of {count[level]}"] for level in chosen]
 
 
-def caveats_sections(subject: Subject) -> list[Section]:
-    """Return the section on rules that found something, each with its worst cell, and on changes of rules; or none."""
+def caveats_section(subject: Subject) -> Section | None:
+    """Return the section on rules that found something, each with its worst cell, and on changes of rules; or None."""
     measurements = subject.measurements
     cells = len(measurements.hashes)
     blocks: list[Block] = []
@@ -219,4 +219,4 @@ def caveats_sections(subject: Subject) -> list[Section]:
         changes = "; ".join(f"{what} ({count} of {cells} cells)" for what, count in measurements.caveat_changes.items())
         text = literal(f"Caveats were looked for by {changes}.")
         blocks.append(Notice("warning", "Caveats by other rules than today's", text))
-    return [Section("Caveats", blocks)] if blocks else []
+    return Section("Caveats", blocks) if blocks else None

@@ -12,7 +12,6 @@ from runner.base.dotted_keys import split_override
 from runner.base.quantities import in_one_unit
 from runner.base.sanitize import few, one_line
 from runner.reporting.answer_map import make_map
-from runner.reporting.answers import Answer
 from runner.reporting.challenge.beside import scope_line
 from runner.reporting.comparison.pairs import label_text
 from runner.reporting.comparison.sweeps import NOISE_ALONE, noise_alone
@@ -20,11 +19,11 @@ from runner.reporting.conditions import conditions_of
 from runner.reporting.document import Document, Provenance, RunList, Section, Text
 from runner.reporting.limits import limiting_joint
 from runner.reporting.markup import literal
-from runner.reporting.sentences import sentences
+from runner.reporting.sections import added_sections, make_sections
 from runner.reporting.sweep import distributions, effects, maps, spec, tradeoff
 from runner.reporting.sweep.cells import (
     axes_section,
-    caveats_sections,
+    caveats_section,
     failing_cells,
     failures_section,
     nothing_differs,
@@ -33,14 +32,13 @@ from runner.reporting.sweep.question import (
     answer_blocks,
     asked_axis,
     causes,
-    find_answers,
     made_equal,
     pairs_section,
     range_told,
     too_few,
 )
 from runner.reporting.sweep.stability import causes_of_failure, remedies
-from runner.reporting.sweep.subject import Subject, choose
+from runner.reporting.sweep.subject import Subject, SweepSubject, choose
 from runner.reporting.words import join_values
 from runner.store import Sweep
 from runner.sweeps.measurements import Measurements, measure_sweep
@@ -66,62 +64,87 @@ def sweep_document(sweep: Sweep, metrics: Sequence[str] = (), runs_address: str 
         RunnerError: If a metric is none of the sweep's.
         StoreError: If a run is missing or damaged.
     """
-    subject = choose(measure_sweep(sweep), metrics)
-    measurements = subject.measurements
-    answers = find_answers(subject)
-    several = bool(subject.metrics and subject.axes)
-    seeds_alone = several and _has_seeds_alone(subject)
-    sections = [failures_section(subject)] if measurements.failed else []
-    texts = sentences(answers)
-    if answers:
-        sections.append(Section("Differences in pairs", answer_blocks(answers, texts[1:])))
-    if sweep.spec:
-        sections.append(spec.section(subject, sweep))
-    if several and not answers:
-        sections.append(distributions.over_seeds(subject) if seeds_alone else effects.section(subject))
-    shown = len(sections) or None
-    sections += caveats_sections(subject)
-    sections.append(axes_section(subject, sweep.command))
-    ranked = subject.ranked
-    if several:
-        sections += [effects.section(subject)] if answers else []
-        compared = pairs_section(answers)
-        sections += [compared] if compared is not None else []
-    if subject.metrics and maps.is_readable(subject):
-        sections.append(maps.section(subject))
-    traded = tradeoff.pair(subject) if subject.metrics else None
-    if traded is not None:
-        sections.append(tradeoff.section(subject, traded))
-    if ranked:
-        sections += [] if seeds_alone else [distributions.section(subject)]
-        sections.append(_motions(subject, sweep, answers))
-    sections.append(_all_runs(subject, sweep, runs_address))
-    sections.append(made_by(measurements, ("sweep", sweep.folder.name)))
+    chosen = choose(measure_sweep(sweep), metrics)
+    subject = SweepSubject(chosen.measurements, chosen.metrics, sweep, runs_address)
+    first = [*make_sections(FIRST, subject), *added_sections("sweep_section", subject)]
     return Document(
         title=_title(subject),
-        subtitle=", ".join(measurements.fixed),
-        abstract=literal("\n".join(map(one_line, _abstract(subject, sweep, answers, texts[:1])))),
-        sections=sections,
-        date=max(measurements.provenance["made on"]),
+        subtitle=", ".join(subject.measurements.fixed),
+        abstract=literal("\n".join(map(one_line, _abstract(subject)))),
+        sections=[*first, *make_sections(DETAILS, subject)],
+        date=max(subject.measurements.provenance["made on"]),
         key_numbers=_key_numbers(subject),
-        shown=shown,
-        map=make_map(answers),
+        shown=len(first) or None,
+        map=make_map(subject.answers),
     )
 
 
-def _motions(subject: Subject, sweep: Sweep, answers: Sequence[Answer]) -> Section:
+def _failures(subject: SweepSubject) -> Section | None:
+    return failures_section(subject) if subject.measurements.failed else None
+
+
+def _differences(subject: SweepSubject) -> Section | None:
+    answers = subject.answers
+    return Section("Differences in pairs", answer_blocks(answers, subject.texts[1:])) if answers else None
+
+
+def _bounds(subject: SweepSubject) -> Section | None:
+    return spec.section(subject, subject.sweep) if subject.sweep.spec else None
+
+
+def _unanswered(subject: SweepSubject) -> Section | None:
+    """Return the effects of the axes if the sweep has no answer."""
+    if not subject.is_compared or subject.answers:
+        return None
+    return distributions.over_seeds(subject) if _has_seeds_alone(subject) else effects.section(subject)
+
+
+def _axes(subject: SweepSubject) -> Section:
+    return axes_section(subject, subject.sweep.command)
+
+
+def _effects(subject: SweepSubject) -> Section | None:
+    return effects.section(subject) if subject.is_compared and subject.answers else None
+
+
+def _pairs(subject: SweepSubject) -> Section | None:
+    return pairs_section(subject.answers) if subject.is_compared else None
+
+
+def _maps(subject: SweepSubject) -> Section | None:
+    return maps.section(subject) if subject.metrics and maps.is_readable(subject) else None
+
+
+def _tradeoff(subject: SweepSubject) -> Section | None:
+    pair = tradeoff.pair(subject) if subject.metrics else None
+    return tradeoff.section(subject, pair) if pair is not None else None
+
+
+def _distributions(subject: SweepSubject) -> Section | None:
+    is_shown = subject.ranked and not (subject.is_compared and _has_seeds_alone(subject))
+    return distributions.section(subject) if is_shown else None
+
+
+def _motions(subject: SweepSubject) -> Section | None:
     """Return the motions of the condition with the largest difference; without an answer those of some cells."""
+    if not subject.ranked:
+        return None
+    answers = subject.answers
     first = next((one.metric for one in answers if one.rank == 0), "")
-    found = max(conditions_of(answers, first), key=lambda each: each.size, default=None)
-    pairs = [one.pairs for one in (found.answers if found else answers) if one.pairs and one.metric == first]
+    largest = max(conditions_of(answers, first), key=lambda each: each.size, default=None)
+    pairs = [one.pairs for one in (largest.answers if largest else answers) if one.pairs and one.metric == first]
     compared = [int(cell) for some in pairs for of in (some.of_a, some.of_b) for cell in of]
-    at = label_text(found.at) if found else ""
+    at = label_text(largest.at) if largest else ""
     shown = distributions.choose_cells(subject, compared or subject.ranked, at)
     cells = [cell for _, some, _ in shown.cells for cell in some]
-    runs = dict(zip(cells, replace(sweep, hashes=subject.hashes(cells)).runs(), strict=True))
+    runs = dict(zip(cells, replace(subject.sweep, hashes=subject.hashes(cells)).runs(), strict=True))
     if compared:
         return distributions.motions_section(subject, shown, runs)
     return distributions.extremes_section(subject, shown, runs)
+
+
+def _provenance(subject: SweepSubject) -> Section:
+    return made_by(subject.measurements, ("sweep", subject.sweep.folder.name))
 
 
 def _key_numbers(subject: Subject) -> list[tuple[str, str, str]]:
@@ -162,9 +185,9 @@ def _title(subject: Subject) -> str:
     return f"Which {axis.name}: {choices}{within}?" if axis.numbers is None else f"What {axis.name} changes{within}"
 
 
-def _abstract(subject: Subject, sweep: Sweep, answers: Sequence[Answer], first: Sequence[str]) -> list[str]:
+def _abstract(subject: SweepSubject) -> list[str]:
     """Return the failures and the answer, then the warnings: a paragraph each."""
-    measurements = subject.measurements
+    measurements, sweep, answers = subject.measurements, subject.sweep, subject.answers
     cells, failed = len(measurements.hashes), measurements.failed
     texts = []
     if failed:
@@ -177,7 +200,7 @@ def _abstract(subject: Subject, sweep: Sweep, answers: Sequence[Answer], first: 
         texts.append(distributions.told_over_seeds(subject))
     else:
         few = too_few(subject) if subject.ranked and subject.axes else ""
-        texts += [few] if few else [*first, *causes(subject, answers)]
+        texts += [few] if few else [*subject.texts[:1], *causes(subject, answers)]
         if answers:
             texts += filter(None, [scope_line(answers, [sweep.folder]), made_equal(subject)])
         texts += effects.describe_shared_variation(subject) if subject.ranked and subject.axes else []
@@ -188,7 +211,7 @@ def _abstract(subject: Subject, sweep: Sweep, answers: Sequence[Answer], first: 
     return texts
 
 
-def _all_runs(subject: Subject, sweep: Sweep, address: str) -> Section:
+def _all_runs(subject: SweepSubject) -> Section:
     measurements = subject.measurements
     order = subject.order
     caption = "All runs, in the order of the first metric; medians of each."
@@ -205,7 +228,9 @@ def _all_runs(subject: Subject, sweep: Sweep, address: str) -> Section:
     named = [(axis, *np.unique(axis.level[order], return_inverse=True)) for axis in subject.axes]
     axes = [(axis.name, [axis.text(level) for level in some.tolist()], level) for axis, some, level in named]
     columns = [(*head, column) for head, column in zip(shown, medians, strict=True)]
-    listing = list_runs(sweep, caption, order.tolist(), columns, measurements.failures, address, axes)
+    listing = list_runs(
+        subject.sweep, caption, order.tolist(), columns, measurements.failures, subject.runs_address, axes
+    )
     text = Text(
         "In the HTML report: filter by value, plot any two quantities against each other, sort by a column; a click on "
         "a point, here or in any figure, shows its run. The command runner table writes all numbers as Parquet and CSV."
@@ -262,3 +287,20 @@ def _some(values: Sequence[str]) -> Sequence[str]:
 def run_command(overrides: Sequence[str]) -> str:
     """Return the command of a run."""
     return shlex.join(["runner", *(text for text in overrides if split_override(text)[0] != "outputs")])
+
+
+FIRST = (_failures, _differences, _bounds, _unanswered)
+"""Sections that a page shows: functions of the subject that return a section or None; plug-ins add theirs behind."""
+DETAILS = (
+    caveats_section,
+    _axes,
+    _effects,
+    _pairs,
+    _maps,
+    _tradeoff,
+    _distributions,
+    _motions,
+    _all_runs,
+    _provenance,
+)
+"""Sections that a page shows on a click."""

@@ -14,11 +14,13 @@ from runner.reporting.charts import palette
 from runner.reporting.charts.figure import spaced_indices
 from runner.reporting.metric_titles import COSTS, metric_label, title, whole_metrics
 from runner.store.axes import Axis
+from runner.store.sweep import Sweep
 from runner.sweeps.measurements import Measurements
 from runner.sweeps.question import find_question
 from runner.sweeps.table import median_ends
 
 if TYPE_CHECKING:
+    from runner.reporting.answers import Answer
     from runner.statistics import EffectAnalysis
     from runner.sweeps.tuning.key import Key
 
@@ -133,6 +135,38 @@ class Subject:
     def hashes(self, cells: Sequence[int]) -> list[str]:
         """Return the hashes of some cells' runs."""
         return [self.measurements.hashes[cell] for cell in cells]
+
+
+@dataclass(frozen=True)
+class SweepSubject(Subject):
+    """A stored sweep as its report looks at it: the subject of the sections of the report.
+
+    Attributes:
+        sweep: The stored sweep.
+        runs_address: Address of the folder of runs, seen from the report, ending in a slash.
+    """
+
+    sweep: Sweep
+    runs_address: str = ""
+
+    @cached_property
+    def answers(self) -> "list[Answer]":
+        """The answers to the question of the sweep."""
+        from runner.reporting.sweep.question import find_answers  # which imports this module
+
+        return find_answers(self)
+
+    @cached_property
+    def texts(self) -> list[str]:
+        """The answers in sentences."""
+        from runner.reporting.sentences import sentences
+
+        return sentences(self.answers)
+
+    @property
+    def is_compared(self) -> bool:
+        """True if the sweep has an axis and a metric to compare."""
+        return bool(self.metrics and self.axes)
 
 
 def group_levels(axis: Axis) -> NDArray[np.intp]:

@@ -21,8 +21,9 @@ from runner.reporting.figures import cover
 from runner.reporting.markup import literal
 from runner.reporting.metric_titles import metric_label, title
 from runner.reporting.overlaid_runs import Level
+from runner.reporting.sections import make_sections
 from runner.reporting.sentences import sentences
-from runner.reporting.sweep.cells import caveats_sections, failed_table
+from runner.reporting.sweep.cells import caveats_section, failed_table
 from runner.reporting.sweep.distributions import motion_blocks
 from runner.reporting.sweep.question import answer_blocks
 from runner.reporting.sweep.report import list_runs, made_by, run_command
@@ -142,7 +143,7 @@ def tuning_document(tuning: Tuning, folder: Path) -> Document:
             Section("Failed trials", (failed_table("trials", ["trial", "run", "values", "failure"], rows),))
         )
     sections += [
-        *caveats_sections(Subject(measurements, ())),
+        *make_sections([caveats_section], Subject(measurements, ())),
         _all_runs(trials, sweep, made, measurements, folder),
         made_by(measurements, ("tuning", tuning.folder.name)),
     ]

@@ -28,7 +28,7 @@ def test_public_names_and_no_others_are_shown():
 
 
 def test_the_import_itself_brings_next_to_nothing():
-    script = "import sys, runner; print([name for name in ('numpy', 'hydra', 'runner.api') if name in sys.modules])"
+    script = "import sys, runner; print(sorted({'numpy', 'hydra', 'runner.api', 'runner.plugin'} & {*sys.modules}))"
     found = subprocess.run([sys.executable, "-c", script], capture_output=True, text=True, check=True)
     assert found.stdout == "[]\n"
 

@@ -6,6 +6,8 @@ import sys
 
 from support.patience import PATIENCE
 
+from runner.base.paths import examples_dir
+
 SHORT = ("robot=macro", "duration=0.05")
 LINES = (
     SHORT,
@@ -13,6 +15,7 @@ LINES = (
     ("-m", *SHORT, "controller.period=5ms,10ms", "seed=0,1", "hydra.sweeper.workers=0"),
     ("compare", "latest", "--by", "controller.period"),
 )
+SECTION = f"section={examples_dir() / 'small_parts' / 'shares.py'}"
 CHILD = """
 import json, sys
 import scipy
@@ -36,13 +39,13 @@ def test_runs_sweeps_and_comparisons_need_linear_algebra_and_special_functions_o
     assert large == []
 
 
-def test_a_report_on_a_sweep_needs_no_pandas_hydra_or_optuna(tmp_path, cli):
+def test_a_report_on_a_sweep_with_a_section_of_a_plugin_needs_no_pandas_hydra_or_optuna(tmp_path, cli):
     folder = cli("-m", *SHORT, "noise=thesis", "controller.period=5ms,10ms", "hydra.sweeper.workers=0").folder
     script = f"""
 import sys
 from runner.cli.main import dispatch
 
-code = dispatch(["report", {str(folder)!r}, "-o", {str(tmp_path / "report")!r}, "-q"])
+code = dispatch(["report", "--plugin", {SECTION!r}, {str(folder)!r}, "-o", {str(tmp_path / "report")!r}, "-q"])
 print(code, sorted({{"dask", "hydra", "optuna", "pandas"}} & {{*sys.modules}}))
 """
     ended = subprocess.run([sys.executable, "-c", script], check=True, capture_output=True, text=True, timeout=PATIENCE)

@@ -46,6 +46,11 @@ NEEDS = {  # what an option does not run without
     "plant=rk4_flexible": ("robot=macro",),
     "plant=rk4_flexible_links": ("robot=macro", "trajectory=quintic"),
     "trajectory=from_file": (f"trajectory.file={SWING}",),
+    **{
+        option: ("disturbance_observer=momentum", "disturbance_observer.torque=measured")
+        for option in options_of("joint_torque_sensor")
+        if option != "joint_torque_sensor=none"
+    },
 }
 
 

@@ -176,7 +176,7 @@ def test_a_sweep_takes_a_plug_in(mine):
     [
         (
             "mine/spring.py",
-            r"must be GROUP=MODULE, as in controller=mine/spring.py; groups: calibration, controller, environment",
+            r"must be GROUP=MODULE, as in controller=mine/spring.py; groups: calibration, controller, endpoint_sensor",
         ),
         ("controler=mine/spring.py", r"did you mean controller\?"),
         ("controller=", r"must be GROUP=MODULE"),

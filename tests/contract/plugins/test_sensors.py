@@ -8,7 +8,7 @@ import pytest
 
 from runner.base.errors import ConfigError, SimulationError
 from runner.robots.mismatch import MISMATCHES
-from runner.sensing import JOINT_TORQUE_SENSORS, NOISES, WRIST_SENSORS
+from runner.sensing import ENDPOINT_SENSORS, JOINT_TORQUE_SENSORS, NOISES, WRIST_SENSORS
 from runner.simulation.loop import simulate
 from runner.simulation.sensors import make_encoders, make_wrist_sensor
 
@@ -100,15 +100,10 @@ def test_a_nominal_robot_that_is_no_robot_of_the_same_joints_is_refused(checked_
 
 
 @pytest.mark.parametrize(
-    ("group", "known"),
-    [
-        ("noise", "encoders"),
-        ("wrist_sensor", "force_torque"),
-        ("joint_torque_sensor", "joint_torque"),
-        ("mismatch", "factors"),
-    ],
+    "kinds", [NOISES, WRIST_SENSORS, JOINT_TORQUE_SENSORS, ENDPOINT_SENSORS, MISMATCHES], ids=lambda kinds: kinds.group
 )
-def test_a_kind_that_no_plugin_has(cli, group, known):
+def test_a_kind_that_no_plugin_has(cli, kinds):
+    group, known = kinds.group, ", ".join(kinds.names())
     ending = cli("robot=macro", f"+{group}.kind=own", "duration=0.1")
     assert ending.code == 2
     assert (
@@ -122,3 +117,30 @@ def test_the_kind_of_a_built_in_sensor_may_be_named(checked_config):
     config = checked_config("robot=macro", *named, "+joint_torque_sensor.kind=joint_torque")
     assert config.interpreted == []
     assert config.compilable
+
+
+def test_readings_of_a_tip_sensor_are_guarded():
+    class Tracker:
+        def measure(self, number, tip):
+            return tip[0]
+
+    with pytest.raises(SimulationError, match=r"measure .* gave an array of shape \(3,\); it must be .* \(2, 3\)"):
+        ENDPOINT_SENSORS.guard(Tracker()).measure(0, np.zeros((2, 3)))
+
+
+def test_the_config_of_a_tip_sensor_says_which_loops_read_it(own_part, cli):
+    module = """
+        from runner.plugin import StrictModel
+
+
+        class TrackerConfig(StrictModel):
+            kind: str
+
+
+        CONFIG = TrackerConfig
+        """
+    ending = cli(
+        "--config-dir", own_part("endpoint_sensor", "tracker", module), "robot=macro", "endpoint_sensor=tracker"
+    )
+    assert ending.code == 2
+    assert "module tracker of 'tracker' needs CONFIG, a class derived from runner.plugin.TipSensorConfig" in ending.err

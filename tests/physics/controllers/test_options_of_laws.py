@@ -3,7 +3,7 @@
 import pytest
 from support.covers import covered
 
-from tools.laws import JOINT_LAWS, OWN_OPTIONS
+from tools.laws import JOINT_LAWS, own_options
 
 OPTIONS = {
     "law": JOINT_LAWS,
@@ -21,7 +21,7 @@ OPTIONS = {
 def test_every_option_composes_and_runs(simulated, chosen):
     law = chosen["law"]
     keys = [f"{key}={value}" for key, value in chosen.items() if key not in ("law", "own")]
-    own = OWN_OPTIONS[law] if chosen["own"] else ()
+    own = own_options(law) if chosen["own"] else ()
     trace = simulated(
         "robot=xarm7", f"controller={law}", *(f"controller.{key}" for key in (*keys, *own)),
         "robot.armature=assumed", "controller.natural_frequency=10", "controller.period=0.001", "duration=0.1",
