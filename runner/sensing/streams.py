@@ -52,7 +52,7 @@ def _seeds(numbers: Sequence[Sequence[int]]) -> list[list[int]]:
     entropies = [[word for number in own for word in _words(number)] for own in numbers]
     lengths = np.array([len(entropy) for entropy in entropies])
     seeds = np.empty((len(entropies), _POOL), dtype=np.uint64)
-    for length in np.unique(lengths):
+    for length in sorted(set(lengths.tolist())):
         own = np.flatnonzero(lengths == length)
         seeds[own] = _hashed(np.array([entropies[run] for run in own], dtype=np.uint32).T)
     return seeds.tolist()
