@@ -8,15 +8,17 @@ import pytest
 from support.engines import ASKED
 
 import runner
+from runner.assembly.validation import validate
 from runner.base.dotted_keys import split_override
+from runner.config.compose.compose import compose
 from runner.reporting.challenge.question import read_question
 from runner.reporting.challenge.words import TITLES, scope_sentences
 from runner.reporting.mathml import faulty
 from runner.reporting.stored import compose_report
 from runner.statistics.scope import first_pairs
-from runner.sweeps.challenge.case import check_case
+from runner.sweeps.challenge.case import Case, check_case
 from runner.sweeps.challenge.combinations import combine
-from runner.sweeps.challenge.families import FAMILIES
+from runner.sweeps.challenge.families import FAMILIES, LeftOutError, _step
 from runner.sweeps.challenge.question import CLASSES
 from runner.sweeps.challenge.stored import open_challenge
 from runner.sweeps.challenge.table import change_values, list_variations, read_values
@@ -234,6 +236,13 @@ def test_what_does_not_apply_is_left_out_with_its_reason(sweep):
     assert change_values({}, ["a.b=[1,2],[3,4]", "gravity=9"], []) == {"a.b": ["[1,2]", "[3,4]"], "gravity": [9.0]}
     order = [list(CLASSES).index(one.kind) for one in found]
     assert order == sorted(order)
+
+
+def test_a_plant_that_integrates_nothing_has_no_finer_step():
+    line = ("robot=meca500", "plant=kinematic", "controller=differential_inverse_kinematics", "trajectory=quintic")
+    config = validate(compose(line))
+    with pytest.raises(LeftOutError, match="the plant integrates nothing"):
+        _step(Case((), (config, config)), 0.2)
 
 
 def test_verify_reads_a_challenge_as_one(cli, ended, tmp_path):
