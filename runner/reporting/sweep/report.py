@@ -104,11 +104,11 @@ def _axes(subject: SweepSubject) -> Section:
 
 
 def _effects(subject: SweepSubject) -> Section | None:
-    return effects.section(subject) if subject.is_compared and subject.answers else None
+    return effects.section(subject) if subject.answers else None
 
 
 def _pairs(subject: SweepSubject) -> Section | None:
-    return pairs_section(subject.answers) if subject.is_compared else None
+    return pairs_section(subject.answers)
 
 
 def _maps(subject: SweepSubject) -> Section | None:

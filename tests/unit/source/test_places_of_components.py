@@ -143,6 +143,20 @@ def test_every_module_of_a_kind_is_in_its_registry():
     assert not lost, f"no line of a registry names {', '.join(lost)}"
 
 
+def test_every_section_of_a_sweep_is_listed():
+    folder = ROOT / "runner" / "reporting" / "sweep"
+    lists = [folder / "report.py", folder / "tuning.py"]
+    listing = "".join(path.read_text(encoding="utf-8") for path in lists)
+    functions = [
+        f"{path.stem}.section" if name == "section" else name
+        for path in folder.glob("*.py")
+        for name in re.findall(r"^def ([a-z]\w*_section|section)\(", path.read_text(encoding="utf-8"), re.MULTILINE)
+    ]
+    assert {"caveats_section", "effects.section"} <= {*functions}
+    lost = [name for name in functions if not is_in(name, listing)]
+    assert not lost, f"no list of sections names {', '.join(lost)}; see DETAILS in runner/reporting/sweep/report.py"
+
+
 def test_laws_are_chosen_by_property():
     assert {name for name, law in LAWS.items() if law.flexible} == {"motor_pd"}
     assert {name for name, law in LAWS.items() if law.periodic} == {"iterative_learning"}
