@@ -40,7 +40,7 @@ _TABLE = """
     controllers/operational_space: operational_space tip_task whole_body
     environments: __init__=environments.__init__ external_wrench=interaction free hand push wall
     metrics: __init__=metrics.__init__ contact=metrics.contact effort family positioning reaching summary tracking
-    plants: __init__=plants.__init__ bullet bullet_engine bullet_links bullet_servers compiled_bullet compiled_friction
+    plants: __init__=plants.__init__ bullet bullet_engine bullet_links bullet_servers compiled_bullet
         compiled_motion=compiled.motion computation=plants.computation decoupled flexibility=plants.flexibility
         flexible_config flexible_joints=plants.flexible_joints friction friction_law kinematic motor_limits mujoco
         plant=plants.plant rk4 rk4_flexible_links runge_kutta servo stepped_bullet whole_motion wrappers=touched
