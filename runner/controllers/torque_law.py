@@ -31,30 +31,24 @@ class Arm(Protocol):
     @property
     def backend(self) -> Backend:
         """Functions over these scalars."""
-        ...
 
     def tip(self, q: Array, dq: Array) -> Tip:
         """Return the state of the tip at joint positions and velocities, shapes (nq,)."""
-        ...
 
     def tip_pose(self, q: Array) -> tuple[Array, Array]:
         """Return x and R of Tip at joint positions, shape (nq,); valid as long as a Tip."""
-        ...
 
     def tip_pose_and_twist(self, q: Array, dq: Array) -> tuple[Array, Array, Array]:
         """Return x and R of Tip, and the twist, shape (6,): linear in m/s, then angular in rad/s."""
-        ...
 
     def mass_matrix(self, q: Array) -> Array:
         """Return M(q), shape (nq, nq), in kg m^2; only the upper triangle is valid."""
-        ...
 
     def inverse_dynamics(self, q: Array, dq: Array, ddq: Array, gravity: Array | None = None) -> Array:
         """Return the torques M ddq + V + G, shape (nq,), in N m; valid until the next call.
 
         Gravity is in the base frame, shape (3,), in m/s^2; None is the arm's own. Without gravity compensation G is 0.
         """
-        ...
 
     def momentum(self, q: Array, dq: Array, gravity: Array) -> tuple[Array, Array]:
         """Return the generalised momenta M dq and their rate without torques, dT/dq - G = C^T dq - G.
@@ -62,7 +56,6 @@ class Arm(Protocol):
         Shapes (nq,), in kg m^2/s and N m. Gravity is in the base frame, shape (3,), in m/s^2, and also acts without
         gravity compensation.
         """
-        ...
 
     def regressor(self, q: Array, dq: Array, dq_r: Array, ddq_r: Array) -> Array:
         """Return Y, shape (nq, 10 nq): Y theta + A ddq_r = M ddq_r + C dq_r + G, with the C of Christoffel's symbols.
@@ -71,7 +64,6 @@ class Arm(Protocol):
         the URDF: mass in kg, mass times centre of mass in kg m, and I_xx, I_xy, I_yy, I_xz, I_yz, I_zz about the
         frame's origin in kg m^2; see RobotModel.inertial_parameters.
         """
-        ...
 
 
 def second_order(natural_frequency: float, damping_ratio: float) -> tuple[float, float]:

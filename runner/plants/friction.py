@@ -185,12 +185,7 @@ def pivot(
 ) -> tuple[Array, Array, Scalar]:
     """Return the dry friction for given directions, and the directions after the first wrong one has changed.
 
-    Args:
-        backend: Functions over these numbers.
-        mobility: See stopping_torques.
-        speed: See stopping_torques.
-        limit: See stopping_torques.
-        direction: See stopping_torques.
+    The arguments after the backend are those of stopping_torques, over its scalars.
 
     Returns:
         mu within its limits, shape (n,), in N m; the directions, shape (n,); and the condition that none was wrong.

@@ -6,17 +6,14 @@ from runner.base.arrays import FloatArray
 from runner.symbolic.maths import Array, Scalar
 from runner.symbolic.program import STAGES
 
-Slope = Callable[[Array], Array]
-"""A function that returns the time derivative of a state."""
-
 
 def advance_stage(
-    slope: Slope, x: Array, h: Scalar, row: Sequence[Scalar], at: Array, sums: Sequence[Array]
+    slope: Callable[[Array], Array], x: Array, h: Scalar, row: Sequence[Scalar], at: Array, sums: Sequence[Array]
 ) -> tuple[Array, list[Array]]:
     """Return the state of the next stage of a step, and the weighted sums of slopes so far.
 
     Args:
-        slope: The time derivative.
+        slope: Function that returns the time derivative of a state.
         x: State at the start of the step.
         h: Step, in s.
         row: Fraction of the step for the next stage, and the weight in each sum, as in STAGES.
@@ -28,11 +25,11 @@ def advance_stage(
     return x + (ahead * h) * k, [total + weight * k for total, weight in zip(sums, weights, strict=True)]
 
 
-def runge_kutta(slope: Slope, x: FloatArray, h: float, steps: int) -> FloatArray:
+def runge_kutta(slope: Callable[[Array], Array], x: FloatArray, h: float, steps: int) -> FloatArray:
     """Return the state after a number of steps.
 
     Args:
-        slope: The time derivative.
+        slope: Function that returns the time derivative of a state.
         x: Initial state.
         h: Step, in s.
         steps: Number of steps.

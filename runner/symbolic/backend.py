@@ -51,8 +51,10 @@ class SymbolicBackend:
         chosen: Any = self._inside(condition, yes)
         other: Any = self._inside(negated(condition), no)
         if isinstance(chosen, tuple):
-            return cast(Chosen, tuple(_select(condition, *pair) for pair in zip(chosen, other, strict=True)))
-        return cast(Chosen, _select(condition, chosen, other))
+            return cast(
+                Chosen, tuple(np.asarray(self.select(condition, *pair)) for pair in zip(chosen, other, strict=True))
+            )
+        return cast(Chosen, np.asarray(self.select(condition, chosen, other)))
 
     def any_of(self, *conditions: Any) -> Any:
         """Return the condition that at least one condition holds; see Backend."""
@@ -149,11 +151,6 @@ class SymbolicBackend:
             failed = all_of([*self._within, failed])
         here = both(failed, equal(self.fault, 0.0))
         self.fault = select(here, float(self.errors.index(text) + 1), self.fault)
-
-
-def _select(condition: Any, chosen: Array, other: Array) -> Array:
-    entries = [select(condition, a, b) for a, b in zip(np.ravel(chosen), np.ravel(other), strict=True)]
-    return np.asarray(as_array(entries).reshape(np.shape(chosen)))
 
 
 def _all_positive(factors: Factors) -> Any:

@@ -28,71 +28,54 @@ class Backend(Protocol):
 
     def choose(self, condition: Scalar, yes: Callable[[], Chosen], no: Callable[[], Chosen]) -> Chosen:
         """Return the result of one of two functions, arrays or tuples of arrays; on floats, the other is not called."""
-        ...
 
     def less(self, a: Scalar, b: Scalar) -> Scalar:
         """Return the condition a < b of two scalars, or of two arrays entry by entry."""
-        ...
 
     def equal(self, a: Scalar, b: Scalar) -> Scalar:
         """Return the condition a = b of two scalars, or of two arrays entry by entry."""
-        ...
 
     def any_of(self, *conditions: Scalar) -> Scalar:
         """Return the condition that at least one condition holds."""
-        ...
 
     def first(self, conditions: Array) -> tuple[Array, Scalar]:
         """Return for each condition whether it is the first that holds, shape (n,), and the condition that none is."""
-        ...
 
     def select(self, condition: Scalar, yes: Scalar, no: Scalar) -> Scalar:
         """Return one of two scalars, or of the entries of two arrays by conditions; both are computed before."""
-        ...
 
     def maximum(self, a: Scalar, b: Scalar) -> Scalar:
         """Return the larger of two scalars."""
-        ...
 
     def floor(self, a: Scalar) -> Scalar:
         """Return the largest integer that is not greater than a scalar."""
-        ...
 
     def absolute(self, a: Scalar) -> Scalar:
         """Return the absolute value of a scalar, or of the entries of an array."""
-        ...
 
     def sqrt(self, a: Scalar) -> Scalar:
         """Return the square root of a scalar."""
-        ...
 
     def decay(self, x: Scalar) -> tuple[Scalar, Scalar]:
         """Return exp(-x) and 1 - exp(-x) of a scalar that is not negative."""
-        ...
 
     def solve_three(self, A: Array, b: Array, singular: str | None) -> tuple[Array, Scalar]:
         """Return A^-1 b and det A, with A of shape (3, 3) and b of shape (3,)."""
-        ...
 
     def solve_symmetric(self, A: Array, b: Array, singular: str | None) -> Array:
         """Return A^-1 b of a positive definite A, with only its upper triangle read; b of shape (n,) or (n, k)."""
-        ...
 
     def solve_chosen(self, A: Array, b: Array, chosen: Array) -> Array:
         """Return A^-1 b of the rows and columns of a positive definite A that conditions choose; 0 in other rows."""
-        ...
 
     def positive_definite(self, A: Array) -> Scalar:
         """Return the condition that a symmetric A is positive definite."""
-        ...
 
     def smallest_eigenvalue(self, A: Array) -> Scalar:
         """Return the smallest eigenvalue of a symmetric A that is positive definite or nearly so."""
-        ...
 
     def rotation_vector(self, R: Array) -> Array:
         """Return axis times angle of a rotation of less than half a turn, shapes (3, 3) and (3,), in rad."""
-        ...
 
 
 class _NumpyBackend:

@@ -96,21 +96,17 @@ class JointMotion(Protocol):
     @property
     def start(self) -> FloatArray:
         """Joint positions at t = 0, shape (nq,)."""
-        ...
 
     @property
     def duration(self) -> float:
         """Time t_f after which the joints rest, in s."""
-        ...
 
     def sample(self, times: FloatArray) -> FloatArray:
         """Return q, dq/dt and d2q/dt2, shape (T, 3, nq)."""
-        ...
 
     @property
     def samples(self) -> int:
         """Number of equal time intervals, so short that the path of the tip bends only once in each of them."""
-        ...
 
 
 @dataclass(frozen=True)

@@ -36,20 +36,16 @@ class Path(Protocol):
     @property
     def start(self) -> FloatArray:
         """Point at u = 0, shape (n,)."""
-        ...
 
     @property
     def end(self) -> FloatArray:
         """Point at u = 1, shape (n,)."""
-        ...
 
     def derivatives(self, u: FloatArray) -> FloatArray:
         """Return the point and its first two derivatives by u, shape (T, 3, n)."""
-        ...
 
     def distance(self, points: FloatArray) -> FloatArray:
         """Return the distance of each point to the curve, shapes (..., n) to (...)."""
-        ...
 
 
 @dataclass(frozen=True)

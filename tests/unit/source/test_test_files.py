@@ -70,7 +70,6 @@ SHARED = {
     "caveats/versions": "physics/caveats/test_monitor.py",
     "caveats/setting": "physics/caveats/test_monitor.py",
     "metrics/family": "contract/plugins/test_metrics.py",
-    "plants/runge_kutta": "physics/symbolic/test_compiled_friction.py",
     "symbolic/backend": "physics/symbolic/test_law.py",
     "plants/flexible_config": "physics/plants/test_flexible_joints.py",
     "plants/rk4_flexible_links": "physics/plants/test_flexible_links.py",
