@@ -212,7 +212,7 @@ def _pushes_steadily(config: RunConfig) -> str | None:
 
 def _has_no_stiction(config: RunConfig) -> str | None:
     found = _friction(config)
-    return None if found is None or found.stiction.any() else "friction.static is not above friction.coulomb"
+    return None if found is None or any(found.stiction) else "friction.static is not above friction.coulomb"
 
 
 def _has_no_curve(config: RunConfig) -> str | None:

@@ -69,7 +69,7 @@ def _engine(case: Case, value: Value) -> Change:
 
 
 def _step(case: Case, value: Value) -> Change:
-    if any(type(config.plant).model_fields["step"].annotation is type(None) for config in case.configs):
+    if any(not config.takes_torques and config.plant.step is None for config in case.configs):
         raise LeftOutError("the plant integrates nothing")
     divisor = max(2, math.ceil(1.0 / min(float(value), case.most_step) - 1e-9))
     steps = [config.timing.step / divisor for config in case.configs]
