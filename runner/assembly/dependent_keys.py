@@ -19,7 +19,7 @@ from runner.controllers.force.impedance import ImpedanceConfig
 from runner.controllers.macro_mini.macro_mini import MacroMiniConfig
 from runner.environments.push import PushConfig
 from runner.plants.decoupled import TorquePlantConfig
-from runner.plants.friction_law import joint_friction
+from runner.plants.friction_law import JointFriction, joint_friction
 from runner.robots.mismatch import MISMATCHES
 from runner.sensing.endpoint import EndpointSensorConfig
 from runner.sensing.velocity import Velocity, gains
@@ -217,19 +217,19 @@ def _has_no_stiction(config: RunConfig) -> str | None:
 
 def _has_no_curve(config: RunConfig) -> str | None:
     found = _friction(config)
-    if found is None or (found.stiction * found.stribeck_speed).any():
+    if found is None or any(map(all, zip(found.stiction, found.stribeck_speed, strict=True))):
         return None
     return _has_no_stiction(config) or "friction.stribeck_speed is null"
 
 
 def _has_no_sigmoid(config: RunConfig) -> str | None:
     found = _friction(config)
-    if found is None or (found.sigmoid[0] * found.sigmoid[1]).any():
+    if found is None or any(found.slopes[0]):
         return None
     return "friction.sigmoid.level and friction.sigmoid.steepness must both be above 0"
 
 
-def _friction(config: RunConfig) -> Any:
+def _friction(config: RunConfig) -> JointFriction | None:
     plant = config.plant
     if not isinstance(plant, TorquePlantConfig):
         return None
