@@ -4,7 +4,8 @@ from dataclasses import dataclass
 from typing import Any
 
 from runner.config.compose.compose import compose
-from runner.reporting.run_report import _yaml, changed_keys
+from runner.reporting.run_report import _yaml
+from runner.sweeps.changes import changed_keys
 
 
 @dataclass
