@@ -188,9 +188,9 @@ MUTANTS = [
         ("a load that helps where it hinders", "ddq) - self.load", "ddq) + self.load"),
     ),
     *_of(
-        "plants/flexible_joints.py",
+        "plants/runge_kutta.py",
         "physics/plants/test_flexible_joints.py",
-        ("the first slope at the second midpoint", "k3 = slope(x + 0.5 * h * k2)", "k3 = slope(x + 0.5 * h * k1)"),
+        ("each stage from the one before", "return x + (ahead * h) * k, [", "return at + (ahead * h) * k, ["),
     ),
     *_of(
         "calibration/gravity.py",
