@@ -47,9 +47,10 @@ def main(rounds: int | None = None) -> bool:
     traces = _varied(trace[None])
     clocked, provenance = timing(np.zeros(1), 0.0, 0.0), job_provenance(config)
     metrics = measure(traces, context)
+    setting = setting_of(config, loop.q_start)  # kept for all repetitions of a config, see simulation/batch.py
 
     def look() -> list[Watch]:
-        watches = [Watch(setting_of(config, loop.q_start), config.caveats) for _ in range(_RUNS)]
+        watches = [Watch(setting, config.caveats) for _ in range(_RUNS)]
         look_together(watches, signals_of(traces, metrics))
         return watches
 
