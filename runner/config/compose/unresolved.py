@@ -89,8 +89,8 @@ def _from_kept(overrides: Sequence[str], config_dirs: tuple[Path, ...], root: st
         kept = _kept(config_dirs, tuple(sorted(options, key=lambda line: line.partition("=")[0])), root, files)
     except LookupError:
         return None
-    config, hydra = dict(kept), kept["hydra"]
-    config.pop("hydra")
+    config = dict(kept)
+    hydra = config.pop("hydra")
     if not all(_put(config, key.split("."), value) for key, value in values):
         return None
     check_references(config)
@@ -102,10 +102,10 @@ def _kept(config_dirs: tuple[Path, ...], options: tuple[str, ...], root: str, fi
     """Return composed options that an earlier process has kept, which must not be changed.
 
     Raises:
-        LookupError: if there are none yet.
+        LookupError: if there are none yet, or they are damaged.
     """
     content = read_content(key_of(config_dirs, options, root, RUN, files)) or {}
-    if not isinstance(get(content, "hydra.runtime.choices"), dict) or get(content, "hydra.sweeper.address") is not None:
+    if not all(isinstance(get(content, key), dict) for key in ("hydra.runtime.choices", "hydra.sweeper")):
         raise LookupError
     return content
 

@@ -107,6 +107,14 @@ def test_a_changed_file_is_composed_again(tmp_path, monkeypatch):
     assert read_unresolved(line, (home,), "config").values["noise"]["position"] == 2e-3
 
 
+def test_a_damaged_entry_is_left_to_hydra(monkeypatch):
+    line = ("robot=macro",)
+    wanted = by_hydra(line, monkeypatch)
+    for damaged in ({}, {"hydra": 1}, {"hydra": {"runtime": {"choices": {}}}}):
+        monkeypatch.setattr(unresolved, "read_content", lambda _, content=damaged: content)
+        assert read_unresolved(line, (), "config") == wanted
+
+
 @pytest.mark.costs(4)
 def test_a_second_process_with_the_same_options_does_not_import_hydra():
     script = (
