@@ -78,7 +78,7 @@ def _simulated(run: store.Run, repetition: int) -> Signals:
     if warning:
         warnings.warn(warning, RuntimeWarning, stacklevel=5)  # at the caller of Run.trace
     table = trace_table(trace)
-    return Signals(table.to_pandas(), units_of(table))
+    return Signals(table.to_pandas(use_threads=False), units_of(table))
 
 
 def families(columns: Sequence[str]) -> dict[str, dict[str, str]]:

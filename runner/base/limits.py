@@ -90,6 +90,9 @@ def half_of_memory() -> float:
 def open_parquet(source: Any, limit: Limit | None = None) -> Any:
     """Return a pyarrow.parquet.ParquetFile; `limit` is for its unpacked bytes, None is half of the machine's memory.
 
+    Its columns must be read with `use_threads=False`: a thread of Arrow that still releases its buffer while Python
+    ends aborts the process (pyarrow 26.0.1, apache/arrow#34314).
+
     Raises:
         ExcessError: if the unpacked size in its metadata exceeds the limit.
         OSError: if the file cannot be read; pyarrow also raises its own exceptions.

@@ -384,7 +384,7 @@ def open_columns(path: Path, names: list[str] | None = None, limit: Limit = RECO
         file = open_parquet(path, limit)
         if excess := RECORDING_NUMBERS.excess(file.metadata.num_rows * file.metadata.num_columns):
             raise ExcessError(f"it {excess}")
-        return file.read(names)
+        return file.read(names, use_threads=False)
     except pyarrow.ArrowException as error:
         raise TableError(path, f"is not a Parquet file: {str(error).splitlines()[0]}") from error
 

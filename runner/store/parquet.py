@@ -128,7 +128,7 @@ def read_table(file: Any, path: Path, columns: Sequence[str] | None = None) -> A
     import pyarrow
 
     try:
-        return file.read(columns)
+        return file.read(columns, use_threads=False)  # see runner/base/limits.py
     except (OSError, pyarrow.ArrowException) as error:
         raise _damaged(path, error) from error
 

@@ -179,7 +179,7 @@ class Run(Stored):
             DamagedError: if the file is missing or damaged.
             StoreError: if the run has no trace.
         """
-        frame: pd.DataFrame = self._table.to_pandas()
+        frame: pd.DataFrame = self._table.to_pandas(use_threads=False)
         return frame
 
     @property

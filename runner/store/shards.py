@@ -312,7 +312,7 @@ def read_columns(path: Path, columns: Sequence[str], start: str = "") -> Any:
         if schema != str(SCHEMA):
             raise SchemaError(path, schema)
         wanted = [*columns, *(name for name in file.schema_arrow.names if start and name.startswith(start))]
-        table = file.read(wanted, use_threads=False)  # each thread would keep its memory
+        table = file.read(wanted, use_threads=False)
     except (OSError, ExcessError, pyarrow.ArrowException) as error:
         raise DamagedError(f"cannot read {path}: {str(error).splitlines()[0]}; {_REMEDY}") from error
     if table.column_names != wanted:

@@ -1,5 +1,7 @@
 """Values of many repetitions in a Parquet file: numbers bit by bit, NaN as null, and files that are none."""
 
+import subprocess
+import sys
 from pathlib import Path
 
 import numpy as np
@@ -32,3 +34,27 @@ def test_a_column_that_is_not_there_is_damage():
 def test_half_a_file_is_damage(content):
     with pytest.raises(DamagedError, match=r"cannot read values.parquet: "):
         open_parquet(content, PATH)
+
+
+READING = """
+import os, sys
+from pathlib import Path
+from runner.store.parquet import open_parquet, read_table
+
+def threads():
+    return len(os.listdir("/proc/self/task"))
+
+path = Path(sys.argv[1])
+file = open_parquet(path.read_bytes(), path)
+before = threads()
+read_table(file, path).to_pandas(use_threads=False)
+print(threads() - before)
+"""
+
+
+@pytest.mark.skipif(not Path("/proc/self/task").is_dir(), reason="only Linux lists threads there")
+def test_reading_starts_no_thread_that_could_outlive_python(tmp_path):
+    path = tmp_path / "values.parquet"
+    path.write_bytes(values_parquet(VALUES))
+    ended = subprocess.run([sys.executable, "-c", READING, path], check=True, capture_output=True, text=True)
+    assert ended.stdout == "0\n"
