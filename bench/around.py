@@ -24,7 +24,7 @@ from runner.simulation.loop import simulate
 from runner.simulation.provenance import job_provenance
 from runner.simulation.results import metric_context, timing
 from runner.simulation.sensors import make_encoders
-from runner.store import Outcome
+from runner.store import RunOutcome
 from runner.store.seal import JsonTexts
 from runner.store.shards import ShardRow, shard_name, write_shard
 from runner.sweeps.records import record_texts
@@ -65,7 +65,7 @@ def main(rounds: int | None = None) -> bool:
         records = record_texts(1, found, clocked, own, texts)
         rows = [
             ShardRow(
-                Outcome(f"{run:024x}", "", False, len(found[run].caveats)),
+                RunOutcome(f"{run:024x}", "", False, len(found[run].caveats)),
                 texts.of({**config.resolved, "seed": run}),
                 config.arm.urdf,
                 record,

@@ -25,7 +25,7 @@ from runner.identification.examination import examine_logs, read_question
 from runner.identification.fit import fit_logs
 from runner.identification.identify import identify
 from runner.identification.log_rows import log_rows
-from runner.identification.parameters import Sum, base_sums
+from runner.identification.parameters import ParameterSum, base_sums
 from runner.recordings.equations import motion_of
 from runner.robots.model import RobotModel
 
@@ -122,7 +122,7 @@ def _against_peers(model: RobotModel, urdf: str, folder: Path) -> bool:
     return met and good
 
 
-def _error(model: RobotModel, values: FloatArray, sums: list[Sum], test: tuple[FloatArray, ...]) -> float:
+def _error(model: RobotModel, values: FloatArray, sums: list[ParameterSum], test: tuple[FloatArray, ...]) -> float:
     q, dq, ddq, tau = test
     pin_model, data = model.pin_model, model.pin_model.createData()
     columns = [each.column for each in sums]

@@ -10,7 +10,7 @@ from collections.abc import Callable
 import numpy as np
 from numpy.typing import NDArray
 
-from runner.reporting.answers import Asked, judge
+from runner.reporting.answers import AskedComparison, judge
 from runner.reporting.comparison.sweeps import compare_levels
 from runner.reporting.conditions import conditions_of
 from runner.statistics import compare_paired
@@ -101,7 +101,7 @@ def _rounding(rng: np.random.Generator) -> FloatArray:
 def _shown(rng: np.random.Generator) -> bool:
     a = rng.normal(10.0, 3.0, 20)
     b = a + rng.normal(1.0, 1.0, 20)
-    return judge([Asked(PRIMARY, "m", compare_paired(a, b))], [PRIMARY])[0].sign > 0
+    return judge([AskedComparison(PRIMARY, "m", compare_paired(a, b))], [PRIMARY])[0].sign > 0
 
 
 def main() -> bool:

@@ -20,8 +20,8 @@ from runner.identification.checks import find_flags, second_method
 from runner.identification.fit import Fit, fit_logs
 from runner.identification.friction_kinds import TERMS, FrictionKind
 from runner.identification.log_rows import LogRows, log_rows
-from runner.identification.parameters import Sum, base_sums
-from runner.recordings.equations import Motion, motion_of
+from runner.identification.parameters import ParameterSum, base_sums
+from runner.recordings.equations import EvenRows, motion_of
 from runner.recordings.smoothing import cutoff
 from runner.robots.model import RobotModel
 
@@ -81,7 +81,7 @@ def _model(arm: str) -> RobotModel:
 
 
 @cache
-def _sums(arm: str) -> list[Sum]:
+def _sums(arm: str) -> list[ParameterSum]:
     return base_sums(_model(arm), True)
 
 
@@ -127,7 +127,12 @@ class _Friction:
     """Friction of the joints of a world, of the size of a fifth of the torques."""
 
     def __init__(
-        self, random: np.random.Generator, model: RobotModel, kind: FrictionKind, base: FloatArray, sums: Sequence[Sum]
+        self,
+        random: np.random.Generator,
+        model: RobotModel,
+        kind: FrictionKind,
+        base: FloatArray,
+        sums: Sequence[ParameterSum],
     ) -> None:
         self.kind, self.base, self.sums = kind, base, sums
         typical = np.abs(_rigid(model, base, sums, *_waves(random, model, np.arange(0.0, 5.0, 0.05)))).mean(axis=0)
@@ -171,10 +176,10 @@ def _waves(random: np.random.Generator, model: RobotModel, t: FloatArray) -> lis
 
 
 def _rigid(
-    model: RobotModel, base: FloatArray, sums: Sequence[Sum], q: FloatArray, dq: FloatArray, ddq: FloatArray
+    model: RobotModel, base: FloatArray, sums: Sequence[ParameterSum], q: FloatArray, dq: FloatArray, ddq: FloatArray
 ) -> FloatArray:
     zeros = np.zeros_like(q)
-    motion = Motion(model, 1.0, 1.0, q, dq, ddq, np.sign(dq), zeros, zeros[0], model.nq * ("",))
+    motion = EvenRows(model, 1.0, 1.0, q, dq, ddq, np.sign(dq), zeros, zeros[0], model.nq * ("",))
     Y = np.concatenate([motion.regressor(), ddq[:, :, None] * np.eye(model.nq)], axis=2)
     return np.asarray(Y[:, :, [each.column for each in sums]] @ base)
 

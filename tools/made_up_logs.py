@@ -15,7 +15,7 @@ from numpy.typing import NDArray
 
 from runner.assembly.validation import validate
 from runner.base.errors import RunnerError
-from runner.base.tables import Table
+from runner.base.tables import NumericTable
 from runner.config.compose.compose import compose
 from runner.doctor.log import LogExamination, judge
 from runner.recordings.columns_map import ColumnsMap
@@ -59,7 +59,7 @@ def judge_log(seed: int) -> tuple[str, str]:
             columns[f"{kind} {place}"] = {kind: name, "unit": unit}
     values = {"t": signals["t"][:, 0]} | {name: signals[name.split()[0]][:, int(name.split()[1])] for name in columns}
     said = ColumnsMap.model_validate({"time": {"column": "t", "unit": "s"}, "columns": columns})
-    found = LogExamination(Table(Path("made_up"), "", values), "", None, (), (), None, None)
+    found = LogExamination(NumericTable(Path("made_up"), "", values), "", None, (), (), None, None)
     try:
         asked = judge(found, model, said)
     except RunnerError:

@@ -13,9 +13,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from runner.reporting.sweep.detect import PILOT
-from runner.statistics import Comparison, compare_paired
+from runner.statistics import PairedComparison, compare_paired
 from runner.statistics.conclusion import ALPHA, conclusion_sign
-from runner.statistics.scope import Effect, Judged, Tried, came_back, first_pairs, judge_in_looks
+from runner.statistics.scope import AskedEffect, JudgedVariation, TriedVariation, came_back, first_pairs, judge_in_looks
 from runner.statistics.turning import PAIRS, find_turns
 
 PROBLEMS = 1000
@@ -81,14 +81,14 @@ def false_words(scatter: str) -> float:
         fresh = _compared(common[:pairs])
         if came_back(fresh, sign, ALPHA) is None:
             continue  # the challenge stops and says so
-        asked = Effect(sign, fresh.difference / max(fresh.medians))
+        asked = AskedEffect(sign, fresh.difference / max(fresh.medians))
         found += any(one.word in _WRONG for one in _words(common + own, asked))
     return found / PROBLEMS
 
 
 def false_vanishing(effect: float) -> float:
     """Return the share of problems in which a variation vanishes whose true effect exceeds the margin."""
-    asked = Effect(-1, _ASKED)
+    asked = AskedEffect(-1, _ASKED)
     found = 0
     for rng in _generators(1):
         pairs = first_pairs(VARIATIONS)
@@ -99,7 +99,7 @@ def false_vanishing(effect: float) -> float:
 
 def told_by(pairs: int) -> float:
     """Return the share of variations without an effect that vanish by a number of pairs; pairs scatter by 5 %."""
-    asked = Effect(-1, _ASKED)
+    asked = AskedEffect(-1, _ASKED)
     words = [
         one
         for rng in _generators(2)
@@ -152,16 +152,16 @@ def _contains(low: float | None, high: float | None, value: float) -> bool:
     return (low is None or low <= value) and (high is None or value <= high)
 
 
-def _words(log: FloatArray, asked: Effect) -> list[Judged]:
+def _words(log: FloatArray, asked: AskedEffect) -> list[JudgedVariation]:
     """Return the words of variations, given the logarithm of the ratio in each pair, shape (variations, pairs)."""
 
-    def ask(places: Sequence[int], pairs: int) -> list[Tried]:
-        return [Tried(_compared(log[place, :pairs])) for place in places]
+    def ask(places: Sequence[int], pairs: int) -> list[TriedVariation]:
+        return [TriedVariation(_compared(log[place, :pairs])) for place in places]
 
     return judge_in_looks(ask, len(log), asked)
 
 
-def _compared(log: FloatArray) -> Comparison:
+def _compared(log: FloatArray) -> PairedComparison:
     return compare_paired(np.ones(len(log)), np.exp(log))
 
 

@@ -51,7 +51,7 @@ class Parameter:
 
 
 @dataclass(frozen=True)
-class Key:
+class NumericKey:
     """Key of a config whose value is a number or a list of numbers.
 
     Attributes:
@@ -93,7 +93,7 @@ class Key:
         return self.recomposed(f"{self.name}={json.dumps(reduce(getitem, self.name.split('.'), changed))}")
 
 
-def find_keys(config: RunConfig, groups: Sequence[str], recomposed: Callable[[str], RunConfig]) -> Iterator[Key]:
+def find_keys(config: RunConfig, groups: Sequence[str], recomposed: Callable[[str], RunConfig]) -> Iterator[NumericKey]:
     """Yield the numeric keys of the config of a run.
 
     Args:
@@ -104,7 +104,7 @@ def find_keys(config: RunConfig, groups: Sequence[str], recomposed: Callable[[st
     for name, found in groupby(_numbers(config).items(), lambda number: _name(number[0])):
         group = next((group for word in name.split(".") for group, words in _WORDS.items() if word in words), "others")
         if group in groups:
-            yield Key(name, group, dict(found), config, recomposed)
+            yield NumericKey(name, group, dict(found), config, recomposed)
 
 
 def _numbers(config: RunConfig) -> dict[Place, float]:

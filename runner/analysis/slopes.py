@@ -6,7 +6,7 @@ from dataclasses import dataclass, field, replace
 
 import numpy as np
 
-from runner.analysis.parameters import Key, Parameter
+from runner.analysis.parameters import NumericKey, Parameter
 from runner.assembly.assemble import describe_program, start_of
 from runner.assembly.compiled.law import structure_cache_key
 from runner.assembly.compiled.loop_program import LoopProgram, Setting
@@ -139,7 +139,7 @@ class Slopes:
     settings: list[Setting] = field(default_factory=list)
     left_out: dict[str, list[str]] = field(default_factory=dict)
 
-    def add_key(self, key: Key) -> None:
+    def add_key(self, key: NumericKey) -> None:
         """Add the numbers of a key if the run depends on them."""
         with self._leaving_out(key.name):
             changed = key.changed(_PART)

@@ -88,7 +88,7 @@ def challenge(
         RunnerError: if there is no comparison, or a family or value does not exist.
     """
     from runner.reporting.challenge.question import read_question
-    from runner.sweeps.challenge.budget import Budget, read_budget
+    from runner.sweeps.challenge.budget import ChallengeBudget, read_budget
     from runner.sweeps.challenge.run import challenge as run_challenge
     from runner.sweeps.challenge.table import change_values, read_values
     from runner.sweeps.run import Engine
@@ -104,7 +104,7 @@ def challenge(
     words += [word for text in texts for word in ("--vary", text)]
     words += ["--without", ",".join(without)] if without else []
     command = shlex.join(["runner", "challenge", *words])
-    allowed = read_budget(budget) if budget else Budget()
+    allowed = read_budget(budget) if budget else ChallengeBudget()
     with workers_only_work():
         made = run_challenge(question, values, outputs_of(folders[0]), Engine(workers, None), command, allowed)
     return public_class(Challenge, made)

@@ -50,7 +50,7 @@ def first_problems(problems: Sequence[str], count: int) -> list[str]:
 
 
 @dataclass(frozen=True)
-class Table:
+class NumericTable:
     """Columns of numbers.
 
     Attributes:
@@ -78,7 +78,7 @@ class Table:
         """Return the label of a row in messages."""
         return f"row {row + 1}" if self.lines is None else f"line {self.lines[row]}"
 
-    def of(self, names: Sequence[str], time: str | None = None) -> "Table":
+    def of(self, names: Sequence[str], time: str | None = None) -> "NumericTable":
         """Return some columns, without the rows in which all of them but the time are empty.
 
         Args:
@@ -96,7 +96,7 @@ class Table:
         kept = ~np.logical_and.reduce([np.isnan(column) for column in signals])
         return replace(self, columns=columns)._only(kept, "without any of the columns")
 
-    def _only(self, kept: NDArray[np.bool_], why: str) -> "Table":
+    def _only(self, kept: NDArray[np.bool_], why: str) -> "NumericTable":
         if kept.all():
             return self
         return replace(
@@ -137,7 +137,7 @@ Wanted = Sequence[str] | Callable[[Sequence[str]], Sequence[str]]
 """The columns to read, or a function that chooses them from the names of all."""
 
 
-def read_table(path: Path, wanted: Wanted | None = None, limit: Limit = RECORDING) -> Table:
+def read_table(path: Path, wanted: Wanted | None = None, limit: Limit = RECORDING) -> NumericTable:
     """Return the columns of a text or Parquet file.
 
     Args:
@@ -157,7 +157,7 @@ def read_table(path: Path, wanted: Wanted | None = None, limit: Limit = RECORDIN
     if head.startswith(PARQUET):
         read = open_columns(path, limit=limit)
         columns, others = number_columns(read, {})
-        table = Table(path, "Parquet", columns, others=others)
+        table = NumericTable(path, "Parquet", columns, others=others)
         chosen = wanted(read.column_names) if callable(wanted) else wanted
         if chosen is not None:
             table.require(chosen)
@@ -168,7 +168,7 @@ def read_table(path: Path, wanted: Wanted | None = None, limit: Limit = RECORDIN
         return read_text_table(path, text, wanted)
 
 
-def read_text_table(path: Path, file: TextIO, wanted: Wanted | None = None, form: str = "text") -> Table:
+def read_text_table(path: Path, file: TextIO, wanted: Wanted | None = None, form: str = "text") -> NumericTable:
     """Return the columns of a text file.
 
     Args:
@@ -194,13 +194,13 @@ def read_text_table(path: Path, file: TextIO, wanted: Wanted | None = None, form
     numeric = [place for place, name in enumerate(names) if name not in twice and _has_numbers(sample, place)]
     others = tuple(name for place, name in enumerate(names) if place not in numeric)
     if wanted is not None:
-        Table(path, form, dict.fromkeys(names, np.empty(0))).require(wanted)
+        NumericTable(path, form, dict.fromkeys(names, np.empty(0))).require(wanted)
         numeric = [names.index(name) for name in wanted]
     numbers, lines, notes = _Numbers(path, names, numeric, strict=wanted is not None).read(chain(sample, rows), rows)
     separated = {"": "blanks", "\t": "tabs", ",": "commas", ";": "semicolons"}[layout.separator]
     units = {name: unit for name, unit in zip(names, layout.units, strict=False) if unit}
     columns = {names[place]: numbers[:, index] for index, place in enumerate(numeric)}
-    return Table(path, f"{form}, cells separated by {separated}", columns, units, lines, others, notes)
+    return NumericTable(path, f"{form}, cells separated by {separated}", columns, units, lines, others, notes)
 
 
 def _layout(path: Path, file: TextIO) -> _Layout:

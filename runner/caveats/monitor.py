@@ -15,7 +15,7 @@ from runner.caveats.integration_error import PlantError
 from runner.caveats.plant_error import PlantStep
 from runner.caveats.rounding_growth import RoundingGrowth
 from runner.caveats.rule import Caveat, Found, TraceRule
-from runner.caveats.setting import Setting, Signals
+from runner.caveats.setting import RunSetting, RunSignals
 from runner.caveats.setting_rules import SETTING_RULES
 from runner.caveats.trace_rules import TRACE_RULES
 from runner.caveats.versions import rules_digest
@@ -46,13 +46,13 @@ class Watch:
         thresholds: Thresholds of the rules.
     """
 
-    def __init__(self, setting: Setting, thresholds: CaveatsConfig) -> None:
+    def __init__(self, setting: RunSetting, thresholds: CaveatsConfig) -> None:
         self._setting = setting
         self._thresholds, self._limits = _by_rule(_values(thresholds))
         self._worst: dict[str, _Worst] = {}
         self._seen = 0
 
-    def look(self, signals: Signals) -> None:
+    def look(self, signals: RunSignals) -> None:
         """Evaluate the rules on one repetition, or on several on a leading axis."""
         look_together([self], signals)
 
@@ -104,7 +104,7 @@ class Watch:
         return text if self._setting.repetitions == 1 else f"{text}, in {worst.sprung} of {self._seen} repetitions"
 
 
-def _of_setting(setting: Setting, thresholds: Mapping[str, Mapping[str, float]]) -> list[Caveat]:
+def _of_setting(setting: RunSetting, thresholds: Mapping[str, Mapping[str, float]]) -> list[Caveat]:
     caveats = []
     for rule in SETTING_RULES:
         value = rule.measure(setting)
@@ -113,7 +113,7 @@ def _of_setting(setting: Setting, thresholds: Mapping[str, Mapping[str, float]])
     return caveats
 
 
-def look_together(watches: Sequence[Watch], signals: Signals) -> None:
+def look_together(watches: Sequence[Watch], signals: RunSignals) -> None:
     """Evaluate the rules on several runs together, each with a separate watch.
 
     Args:

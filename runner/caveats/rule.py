@@ -5,7 +5,7 @@ from dataclasses import asdict, dataclass
 from typing import Any
 
 from runner.base.arrays import FloatArray
-from runner.caveats.setting import Setting, Signals
+from runner.caveats.setting import RunSetting, RunSignals
 
 
 @dataclass(frozen=True)
@@ -19,8 +19,8 @@ class TraceRule:
     """
 
     name: str
-    measure: Callable[[Signals, Setting], FloatArray]
-    tell: Callable[[float, int, Setting], str]
+    measure: Callable[[RunSignals, RunSetting], FloatArray]
+    tell: Callable[[float, int, RunSetting], str]
 
 
 @dataclass(frozen=True)
@@ -34,8 +34,8 @@ class SettingRule:
     """
 
     name: str
-    measure: Callable[[Setting], float | None]
-    tell: Callable[[float, Setting], str]
+    measure: Callable[[RunSetting], float | None]
+    tell: Callable[[float, RunSetting], str]
 
 
 def percent(share: float) -> str:
@@ -43,7 +43,7 @@ def percent(share: float) -> str:
     return f"{100.0 * share:.3g} %"
 
 
-def called(joint: int, setting: Setting) -> str:
+def called(joint: int, setting: RunSetting) -> str:
     """Return the name of a joint in a message: "joint q1", or the name itself if it starts with joint, as "joint2"."""
     name = setting.joint_names[joint]
     return name if name.startswith("joint") else f"joint {name}"

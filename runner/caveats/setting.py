@@ -25,7 +25,7 @@ IDEAL = "kinematic"
 
 
 @dataclass(frozen=True)
-class Setting:
+class RunSetting:
     """Setting of a run.
 
     Attributes:
@@ -78,7 +78,7 @@ class Setting:
     left_out: Mapping[str, Sequence[str]]
 
 
-def setting_of(config: "RunConfig", q_start: FloatArray | None = None) -> Setting:
+def setting_of(config: "RunConfig", q_start: FloatArray | None = None) -> RunSetting:
     """Return the setting of a run.
 
     Args:
@@ -96,7 +96,7 @@ def setting_of(config: "RunConfig", q_start: FloatArray | None = None) -> Settin
     if config.commands == "torque":
         for loop in config.loops:
             ticks[loop.joints] = round(loop.period / config.timing.tick)
-    return Setting(
+    return RunSetting(
         repetitions=config.settings.repetitions,
         duration=config.timing.ticks * config.timing.tick,
         robot=config.robot,
@@ -173,7 +173,7 @@ def _of_model(model: "RobotModel") -> tuple[Sequence[str], FloatArray, float]:
 
 
 @dataclass(frozen=True)
-class Signals:
+class RunSignals:
     """Signals and metrics of a run, with one row for each control tick; leading axes are for several runs.
 
     Attributes:
@@ -194,12 +194,12 @@ class Signals:
     saturation: FloatArray
     limits: FloatArray
 
-    def part(self, first: int, last: int) -> "Signals":
+    def part(self, first: int, last: int) -> "RunSignals":
         """Return the runs on the first axis from index `first` to before `last`."""
-        return Signals(**{name: value[first:last] for name, value in vars(self).items()})
+        return RunSignals(**{name: value[first:last] for name, value in vars(self).items()})
 
 
-def signals_of(trace: Trace, metrics: Mapping[str, float | FloatArray | None]) -> Signals:
+def signals_of(trace: Trace, metrics: Mapping[str, float | FloatArray | None]) -> RunSignals:
     """Return the signals for the rules, of a run that did not fail or of several such runs on the first axis.
 
     Args:
@@ -208,7 +208,7 @@ def signals_of(trace: Trace, metrics: Mapping[str, float | FloatArray | None]) -
     """
     shares = [metrics[f"saturation_fraction_q{joint + 1}"] for joint in range(len(trace.joint_names))]
     tip = trace.tip
-    return Signals(
+    return RunSignals(
         q=trace.q,
         dq=trace.dq,
         tau=trace.tau[..., :-1, :],

@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from runner.caveats.rule import SettingRule
-from runner.caveats.setting import Setting
+from runner.caveats.setting import RunSetting
 
 if TYPE_CHECKING:
     from runner.robots.mismatch import MismatchConfig
@@ -19,25 +19,25 @@ _DIGITS_OF_RADIUS = 6  # of the radius; an axis without a spring has an eigenval
 _DIGITS = 6  # of the fraction; numerical double poles are accurate to half of the digits only
 
 
-def _overload(setting: Setting) -> float | None:
+def _overload(setting: RunSetting) -> float | None:
     """Return the ratio of tool and payload to the rated payload; None if no rating is given."""
     robot = setting.robot
     return None if robot.rated_payload is None else robot.burden / robot.rated_payload
 
 
-def _tell_overload(value: float, setting: Setting) -> str:
+def _tell_overload(value: float, setting: RunSetting) -> str:
     robot = setting.robot
     what = "the payload weighs" if robot.tool is None else "tool and payload weigh"
     rating = f"the {robot.rated_payload:g} kg that {robot.name} is rated for"
     return f"{what} {robot.burden:.4g} kg, {value:.3g} times {rating}"
 
 
-def _lifted(setting: Setting) -> float | None:
+def _lifted(setting: RunSetting) -> float | None:
     """Return the payload, in kg, if a joint has no torque limit."""
     return None if all(map(math.isfinite, setting.torque_limits.tolist())) else setting.robot.payload.largest
 
 
-def _tell_lifted(value: float, setting: Setting) -> str:
+def _tell_lifted(value: float, setting: RunSetting) -> str:
     endless = [name for name, limit in zip(setting.joint_names, setting.torque_limits, strict=True) if limit == np.inf]
     which = "no joint" if len(endless) == len(setting.joint_names) else f"not joint {', '.join(endless)}"
     return f"{setting.robot.name} lifts {value:.4g} kg, and would lift anything: {which} has a torque limit"
@@ -46,18 +46,18 @@ def _tell_lifted(value: float, setting: Setting) -> str:
 NO_EFFORT_LIMIT = SettingRule("no_effort_limit", _lifted, _tell_lifted)
 
 
-def _noise_beside_exact(setting: Setting) -> float | None:
+def _noise_beside_exact(setting: RunSetting) -> float | None:
     return setting.noise if setting.torques else None  # laws that command positions do not use velocities
 
 
-def _tell_noise(value: float, setting: Setting) -> str:
+def _tell_noise(value: float, setting: RunSetting) -> str:
     return (
         f"controllers measure positions to {value:.3g} rad and velocities exactly (noise.velocity: exact), which no "
         "encoder gives: torques and saturation may be larger"
     )
 
 
-def _fixed_error(setting: Setting) -> float | None:
+def _fixed_error(setting: RunSetting) -> float | None:
     """Return the largest relative error of the nominal model, if it is the same in several repetitions."""
     mismatch = setting.mismatch
     if mismatch is None or mismatch.varies or setting.repetitions == 1:
@@ -65,7 +65,7 @@ def _fixed_error(setting: Setting) -> float | None:
     return max(abs(mismatch.payload) / setting.mass, *(abs(value - 1.0) for value in _factors(mismatch).values()))
 
 
-def _tell_fixed(value: float, setting: Setting) -> str:
+def _tell_fixed(value: float, setting: RunSetting) -> str:
     mismatch = setting.mismatch
     wrong = [] if mismatch is None else [name for name, value in _factors(mismatch).items() if value != 1.0]
     wrong += ["payload"] if mismatch is not None and mismatch.payload else []
@@ -85,7 +85,7 @@ def _factors(mismatch: "MismatchConfig") -> dict[str, float]:
 FIXED_MISMATCH = SettingRule("fixed_mismatch", _fixed_error, _tell_fixed)
 
 
-def _tell_gains(value: float, setting: Setting) -> str:
+def _tell_gains(value: float, setting: RunSetting) -> str:
     coupling = 1.0 if setting.velocity_loop is None else setting.velocity_loop.coupling
     text = (
         "the velocity loop is unstable: controller.natural_frequency or controller.period is at least "
@@ -100,12 +100,12 @@ def _tell_gains(value: float, setting: Setting) -> str:
     )
 
 
-def _time_share(setting: Setting) -> float | None:
+def _time_share(setting: RunSetting) -> float | None:
     """Return the ratio of three times the slowest time constant to the run; None if no time constant is known."""
     return None if setting.slowest is None else round(_ENOUGH * setting.slowest.seconds / setting.duration, _DIGITS)
 
 
-def _tell_horizon(value: float, setting: Setting) -> str:
+def _tell_horizon(value: float, setting: RunSetting) -> str:
     part, seconds = ("", 0.0) if setting.slowest is None else (setting.slowest.part, setting.slowest.seconds)
     return (
         f"the law's {part} has a time constant of {seconds:.3g} s, and the run ends after {setting.duration:g} s: it "
@@ -120,7 +120,7 @@ def _rounded_up(value: float) -> float:
     return math.ceil(value / unit) * unit
 
 
-def _radius(setting: Setting) -> float | None:
+def _radius(setting: RunSetting) -> float | None:
     """Return the spectral radius of contact with servos or under a hybrid force law; None without such a contact."""
     if setting.touch is not None:
         return round(setting.touch, _DIGITS_OF_RADIUS)
@@ -135,7 +135,7 @@ def _radius(setting: Setting) -> float | None:
         return None
 
 
-def _tell_radius(value: float, setting: Setting) -> str:
+def _tell_radius(value: float, setting: RunSetting) -> str:
     if setting.touch is not None:
         return (
             "by the linear map of force law and wall at the start, contact with the wall is unstable: a small motion "
@@ -149,7 +149,7 @@ def _tell_radius(value: float, setting: Setting) -> str:
     )
 
 
-def _tell_left_out(value: float, setting: Setting) -> str:
+def _tell_left_out(value: float, setting: RunSetting) -> str:
     return "; ".join(f"not taken from {file}: {'; '.join(parts)}" for file, parts in setting.left_out.items())
 
 

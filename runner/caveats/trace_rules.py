@@ -5,7 +5,7 @@ import numpy as np
 from runner.base.arrays import FloatArray
 from runner.base.trace import by_rows
 from runner.caveats.rule import TraceRule, called, percent
-from runner.caveats.setting import IDEAL, Setting, Signals
+from runner.caveats.setting import IDEAL, RunSetting, RunSignals
 
 _AT_LIMIT = 1.0 - 1e-12  # as in the metric saturation_fraction
 _SIZED = 60  # most rows, including the last one, used for the size of a motion
@@ -13,7 +13,7 @@ _DIGITS_OF_SPEED = 9  # a speed at its limit may exceed it by rounding
 _END = 10  # for a motion to a goal, the last tenth of the run is evaluated
 
 
-def _unfollowed(signals: Signals, setting: Setting) -> FloatArray:
+def _unfollowed(signals: RunSignals, setting: RunSetting) -> FloatArray:
     """Return the ratio of the largest tip error to the size of the motion, shape (..., 1).
 
     The size is the largest distance of the desired position from the start of the tip. For a motion to a goal, whose
@@ -41,13 +41,13 @@ def _longest(vectors: FloatArray) -> FloatArray:
     return longest
 
 
-def _tell_unfollowed(value: float, joint: int, setting: Setting) -> str:
+def _tell_unfollowed(value: float, joint: int, setting: RunSetting) -> str:
     if setting.tracked:
         return f"the arm did not follow: the tip's error reaches {percent(value)} of the size of its motion"
     return f"the arm did not follow: at the end the tip is still {percent(value)} of its way from the goal"
 
 
-def _beyond(signals: Signals, setting: Setting) -> FloatArray:
+def _beyond(signals: RunSignals, setting: RunSetting) -> FloatArray:
     """Return the excess of each joint over its position limits, shape (..., nq), in rad; negative within the limits."""
     lower, upper = setting.position_limits
     q = by_rows(signals.q)
@@ -55,14 +55,14 @@ def _beyond(signals: Signals, setting: Setting) -> FloatArray:
     return excess
 
 
-def _tell_beyond(value: float, joint: int, setting: Setting) -> str:
+def _tell_beyond(value: float, joint: int, setting: RunSetting) -> str:
     return (
         f"{called(joint, setting)} goes {value:.3g} {setting.joint_units[joint]} beyond its position limits, "
         f"at which the plant {setting.plant} does not hold it"
     )
 
 
-def _speeding(signals: Signals, setting: Setting) -> FloatArray:
+def _speeding(signals: RunSignals, setting: RunSetting) -> FloatArray:
     """Return the largest speed of each joint as a fraction of its limit, shape (..., nq); 0 without a limit."""
     limits = np.where(setting.velocity_limits > 0.0, setting.velocity_limits, np.inf)  # a limit of 0 is a missing one
     fastest = np.abs(by_rows(signals.dq)).max(axis=-1)
@@ -70,7 +70,7 @@ def _speeding(signals: Signals, setting: Setting) -> FloatArray:
     return share
 
 
-def _tell_speeding(value: float, joint: int, setting: Setting) -> str:
+def _tell_speeding(value: float, joint: int, setting: RunSetting) -> str:
     limit = f"{setting.velocity_limits[joint]:.4g} {setting.joint_units[joint]}/s"
     return (
         f"{called(joint, setting)} moves at {value:.3g} times its speed limit, {limit}, which the plant "
@@ -78,7 +78,7 @@ def _tell_speeding(value: float, joint: int, setting: Setting) -> str:
     )
 
 
-def _tell_saturated(value: float, joint: int, setting: Setting) -> str:
+def _tell_saturated(value: float, joint: int, setting: RunSetting) -> str:
     name, limit = called(joint, setting), _limit(joint, setting)
     if setting.plant == IDEAL:
         return (
@@ -88,7 +88,7 @@ def _tell_saturated(value: float, joint: int, setting: Setting) -> str:
     return f"{name} is at its torque limit, {limit}, in {percent(value)} of the ticks"
 
 
-def _chatter(signals: Signals, setting: Setting) -> FloatArray:
+def _chatter(signals: RunSignals, setting: RunSetting) -> FloatArray:
     """Return the fraction of loop ticks with a torque jump from one limit to the opposite one, shape (..., nq)."""
     if setting.plant == IDEAL:
         return np.zeros_like(signals.saturation)
@@ -107,7 +107,7 @@ def _chatter(signals: Signals, setting: Setting) -> FloatArray:
     return np.minimum(share, 1.0)
 
 
-def _tell_chatter(value: float, joint: int, setting: Setting) -> str:
+def _tell_chatter(value: float, joint: int, setting: RunSetting) -> str:
     name, limit = called(joint, setting), _limit(joint, setting)
     return (
         f"{name} chatters: its torque jumps from one limit, {limit}, to the opposite one "
@@ -115,7 +115,7 @@ def _tell_chatter(value: float, joint: int, setting: Setting) -> str:
     )
 
 
-def _limit(joint: int, setting: Setting) -> str:
+def _limit(joint: int, setting: RunSetting) -> str:
     unit = "N m" if setting.joint_units[joint] == "rad" else "N"
     return f"{setting.torque_limits[joint]:.4g} {unit}{' at rest' if setting.speed_limits_torque else ''}"
 

@@ -14,7 +14,7 @@ from runner.base.former_names import OPTIONS
 from runner.store.kinds import Kind, find_folder
 
 
-class Stored:
+class StoredFolder:
     """Argument type: the folder of a stored result, or the word `latest`; see find_folder.
 
     Args:
@@ -30,7 +30,7 @@ class Stored:
         return Path(text) if self._other(Path(text)) else find_folder(text, self.kinds)
 
 
-class Names:
+class NameList:
     """Argument type: a comma-separated list of names.
 
     Args:
@@ -85,13 +85,13 @@ def config_folder(text: str) -> Path:
 
 _SHARED: dict[str, tuple[tuple[str, ...], dict[str, Any]]] = {
     "output": (("-o", "--output"), {"type": Path, "metavar": "PATH"}),
-    "metrics": (("--metrics",), {"type": Names(), "metavar": "A,B"}),
+    "metrics": (("--metrics",), {"type": NameList(), "metavar": "A,B"}),
     "jobs": (("-j", "--jobs"), {"type": count, "metavar": "N"}),
     "json": (("--json",), {"action": "store_true"}),
     "baseline": (("--baseline",), {"type": Path, "metavar": "FILE"}),
     "save_baseline": (("--save-baseline",), {"type": Path, "metavar": "FILE"}),
-    "by": (("--by",), {"type": Names(), "metavar": "A,B"}),
-    "within": (("--within",), {"type": Names(), "metavar": "A,B"}),
+    "by": (("--by",), {"type": NameList(), "metavar": "A,B"}),
+    "within": (("--within",), {"type": NameList(), "metavar": "A,B"}),
     "where": (("--where",), {"action": "append", "default": [], "metavar": "KEY=VALUE"}),
     "config_dir": (
         ("--config-dir", "-cd"),
@@ -189,7 +189,7 @@ class Parser(argparse.ArgumentParser):
             meaning: Help of the option.
             most: Highest number of formats; None for any number.
         """
-        self.add_argument("--format", type=Names(allowed, most), metavar="A,B", help=meaning)
+        self.add_argument("--format", type=NameList(allowed, most), metavar="A,B", help=meaning)
 
     def add_overrides(self, meaning: str, root: str = "config") -> None:
         """Add a list of overrides, with options anywhere among them.

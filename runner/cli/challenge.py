@@ -12,8 +12,8 @@ from argparse import Namespace
 
 from runner.base.errors import RunnerError
 from runner.base.sanitize import one_line
-from runner.cli.arguments import Names, Parser, Stored
-from runner.sweeps.challenge.budget import Budget, read_budget
+from runner.cli.arguments import NameList, Parser, StoredFolder
+from runner.sweeps.challenge.budget import ChallengeBudget, read_budget
 
 _JOBS = 2
 
@@ -23,7 +23,7 @@ def add_arguments(parser: Parser) -> None:
     parser.add_argument(
         "folders",
         nargs="+",
-        type=Stored("run", "sweep", "tuning"),
+        type=StoredFolder("run", "sweep", "tuning"),
         metavar="RESULT",
         help="a sweep, a tuning, two sweeps or two runs; or latest",
     )
@@ -36,9 +36,9 @@ def add_arguments(parser: Parser) -> None:
     parser.add_argument(
         "--vary", action="append", default=[], metavar="KEY=A,B", help="values of a family or key; repeat for more"
     )
-    parser.add_argument("--without", type=Names(), default=[], metavar="A,B", help="families to leave out")
+    parser.add_argument("--without", type=NameList(), default=[], metavar="A,B", help="families to leave out")
     parser.add_argument(
-        "--budget", type=read_budget, default=Budget(), metavar="60s|N", help="time, or number of variations"
+        "--budget", type=read_budget, default=ChallengeBudget(), metavar="60s|N", help="time, or number of variations"
     )
 
 

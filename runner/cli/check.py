@@ -16,7 +16,7 @@ from typing import TYPE_CHECKING
 from runner.base.errors import RunnerError
 from runner.base.quantities import plain_number
 from runner.base.sanitize import one_line
-from runner.cli.arguments import Names, Parser, Stored
+from runner.cli.arguments import NameList, Parser, StoredFolder
 from runner.reporting.table import Cell, Number, Table, numbers, terminal
 from runner.sweeps.challenge.question import CLASSES
 
@@ -24,7 +24,7 @@ if TYPE_CHECKING:
     from runner.statistics.proportion import Share
     from runner.statistics.spec import Kept
     from runner.store import Run, Sweep
-    from runner.store.baselines import Bands, Finding
+    from runner.store.baselines import BandResult, Bands
     from runner.store.cells import Move, SweepBaseline
 
 _MOVE_COLUMNS = ("cell", "metric", *numbers("was", "is", "moved"), "beyond the seeds' spread")
@@ -34,7 +34,7 @@ _SAYS = {"kept": "good", "broken": "broken", "untold": "too few repetitions to t
 
 def add_arguments(parser: Parser) -> None:
     """Add the arguments."""
-    stored = Stored("run", "sweep", "tuning", "challenge")
+    stored = StoredFolder("run", "sweep", "tuning", "challenge")
     parser.add_argument("folder", type=stored, metavar="DIR", help="a run, sweep or challenge; or latest")
     parser.add_shared(
         baseline="bands or a saved sweep (default: the spec, or the experiment's)",
@@ -48,7 +48,7 @@ def add_arguments(parser: Parser) -> None:
     )
     parser.add_argument(
         "--require-scope",
-        type=Names(list(CLASSES)),
+        type=NameList(list(CLASSES)),
         metavar="A,B",
         help="challenge: classes that it must hold for",
     )
@@ -62,7 +62,7 @@ def run(options: argparse.Namespace) -> int:
     from runner.store.baselines import Bands, load_baseline, renew_bands
     from runner.store.cells import cell_names, save_baseline
     from runner.store.kinds import kind_of
-    from runner.sweeps.rounding import Sensitivity, find_sensitive
+    from runner.sweeps.rounding import RoundingSensitivity, find_sensitive
 
     if options.require_scope is not None or kind_of(options.folder) == "challenge":
         return _check_scope(options)
@@ -73,7 +73,7 @@ def run(options: argparse.Namespace) -> int:
         path, sweep = options.save_baseline, store.open_sweep(options.folder)
         before = load_baseline(path) if path.exists() else None
         bands = before if isinstance(before, Bands) else None
-        found = Sensitivity() if bands else find_sensitive(sweep)
+        found = RoundingSensitivity() if bands else find_sensitive(sweep)
         count = renew_bands(bands, list(sweep.runs()), path) if bands else save_baseline(sweep, path, found.changes)
         print(f"saved: {count} metric{'s' if count > 1 else ''} of {options.folder} in {path}{found.in_words()}")
         return 0
@@ -183,7 +183,7 @@ def _check_bands(runs: "Sequence[Run]", given: "Bands | None") -> int:
     return 0
 
 
-def _report(run: "Run", baseline: "Bands", findings: "Sequence[Finding]") -> str:
+def _report(run: "Run", baseline: "Bands", findings: "Sequence[BandResult]") -> str:
     wrong = [finding for finding in findings if not finding.good]
     head = f"{run.folder}: {len(wrong)} of {len(findings)} metrics fall short of {baseline.name}"
     rows: list[list[Cell]] = [

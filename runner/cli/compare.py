@@ -16,7 +16,7 @@ from typing import TYPE_CHECKING, Any
 
 from runner.base.errors import RunnerError
 from runner.base.sanitize import one_line
-from runner.cli.arguments import Parser, Stored, config_folder, seconds
+from runner.cli.arguments import Parser, StoredFolder, config_folder, seconds
 from runner.store.kinds import kind_of
 
 if TYPE_CHECKING:
@@ -32,7 +32,7 @@ def add_arguments(parser: Parser) -> None:
     parser.add_argument(
         "folders",
         nargs="+",
-        type=Stored("run", "sweep", other=_is_recording),
+        type=StoredFolder("run", "sweep", other=_is_recording),
         metavar="DIR",
         help="runs, sweeps, latest, or a log of an arm",
     )

@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING
 
 from runner.base.errors import RunnerError, unknown
 from runner.base.sanitize import one_line
-from runner.cli.arguments import WIDTHS, Parser, Stored, millimetres
+from runner.cli.arguments import WIDTHS, Parser, StoredFolder, millimetres
 from runner.cli.commands import find_document
 
 if TYPE_CHECKING:
@@ -27,7 +27,7 @@ def add_arguments(parser: Parser) -> None:
     """Add the arguments."""
     parser.add_argument(
         "folders",
-        type=Stored("run", "sweep", "tuning", other=find_document),
+        type=StoredFolder("run", "sweep", "tuning", other=find_document),
         nargs="+",
         metavar="DIR",
         help="a run, sweep or tuning; several runs or sweeps to compare; a study's name or folder; or latest",

@@ -5,7 +5,7 @@ Example: runner report latest --format html
 
 from argparse import Namespace
 
-from runner.cli.arguments import Parser, Stored
+from runner.cli.arguments import Parser, StoredFolder
 
 FORMATS = ("html", "pdf")
 
@@ -15,7 +15,7 @@ def add_arguments(parser: Parser) -> None:
     parser.add_argument(
         "folders",
         nargs="+",
-        type=Stored("run", "sweep", "tuning", "challenge", "identification"),
+        type=StoredFolder("run", "sweep", "tuning", "challenge", "identification"),
         metavar="DIR",
         help="runs, sweeps, one tuning, challenge or identification; or latest",
     )

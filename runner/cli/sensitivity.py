@@ -14,7 +14,7 @@ from typing import TYPE_CHECKING
 
 from runner.base import progress
 from runner.base.quantities import plain_number
-from runner.cli.arguments import Names, Parser, Stored
+from runner.cli.arguments import NameList, Parser, StoredFolder
 from runner.reporting.table import Cell, Number, Table, numbers, terminal
 
 if TYPE_CHECKING:
@@ -34,10 +34,10 @@ _GROUPS = (
 
 def add_arguments(parser: Parser) -> None:
     """Add the arguments."""
-    parser.add_argument("folder", type=Stored("run"), metavar="RUN", help="folder of a run, or latest")
+    parser.add_argument("folder", type=StoredFolder("run"), metavar="RUN", help="folder of a run, or latest")
     parser.add_shared(metrics="metrics (default: the main ones)")
     groups = f"groups of parameters: {', '.join(_GROUPS)} (default: all)"
-    parser.add_argument("--parameters", type=Names(_GROUPS), metavar="A,B", help=groups)
+    parser.add_argument("--parameters", type=NameList(_GROUPS), metavar="A,B", help=groups)
     parser.add_argument("--repetition", type=int, default=0, metavar="N", help="repetition (default: 0)")
     parser.add_argument(
         "--finite-differences", action="store_true", help="also compute central differences, to compare"

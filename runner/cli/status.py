@@ -10,7 +10,7 @@ from argparse import Namespace
 from typing import TYPE_CHECKING
 
 from runner.base.sanitize import one_line
-from runner.cli.arguments import Parser, Stored, count
+from runner.cli.arguments import Parser, StoredFolder, count
 
 if TYPE_CHECKING:
     from runner.store.sweep import Sweep
@@ -18,7 +18,9 @@ if TYPE_CHECKING:
 
 def add_arguments(parser: Parser) -> None:
     """Add the arguments."""
-    parser.add_argument("folder", type=Stored("sweep", "tuning"), metavar="DIR", help="folder of a sweep, or latest")
+    parser.add_argument(
+        "folder", type=StoredFolder("sweep", "tuning"), metavar="DIR", help="folder of a sweep, or latest"
+    )
     parser.add_argument(
         "--parts", type=count, metavar="N", help="print the parts with missing cells, such as 3,17,40-42"
     )

@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING
 
 from runner.base.errors import RunnerError, unknown
 from runner.base.sanitize import one_line
-from runner.cli.arguments import WIDTHS, Parser, Stored, millimetres, put
+from runner.cli.arguments import WIDTHS, Parser, StoredFolder, millimetres, put
 
 if TYPE_CHECKING:
     from runner.sweeps.measurements import Measurements
@@ -24,7 +24,7 @@ FORMATS = tuple(_ENDINGS.values())
 
 def add_arguments(parser: Parser) -> None:
     """Add the arguments."""
-    stored = Stored("sweep", "run", "tuning")
+    stored = StoredFolder("sweep", "run", "tuning")
     parser.add_argument("folder", type=stored, metavar="DIR", help="folder of a sweep or run, or latest")
     parser.add_formats(FORMATS, f"{', '.join(FORMATS)} (default: by the name of --output)", most=1)
     parser.add_shared(

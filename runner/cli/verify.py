@@ -27,7 +27,7 @@ _WORDS: Mapping[State, str] = {
 
 
 @dataclass(frozen=True)
-class Found:
+class VerifiedResult:
     """State of one stored result.
 
     Attributes:
@@ -71,7 +71,7 @@ def run(options: Namespace) -> int:
     return 1 if problems else 0
 
 
-def verify(outputs: Path) -> Iterator[Found]:
+def verify(outputs: Path) -> Iterator[VerifiedResult]:
     """Read all stored results in an outputs folder, and compare them with their checksums.
 
     Args:
@@ -84,15 +84,15 @@ def verify(outputs: Path) -> Iterator[Found]:
         for path in sorted((outputs / name).glob(FILES.get(name, "[!.]*"))):
             needed = (folders[name].files[0], *folders[name].more) if name in folders else ()
             if not all((path / each).exists() for each in needed):
-                yield Found(name, "unfinished")
+                yield VerifiedResult(name, "unfinished")
                 continue
             try:
                 _read(name, path)
-                yield Found(name, "good")
+                yield VerifiedResult(name, "good")
             except SchemaError as error:
-                yield Found(name, "other version", str(error))
+                yield VerifiedResult(name, "other version", str(error))
             except DamagedError as error:
-                yield Found(name, "damaged", str(error))
+                yield VerifiedResult(name, "damaged", str(error))
 
 
 def _read(name: str, path: Path) -> None:

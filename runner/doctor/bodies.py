@@ -8,7 +8,7 @@ from pathlib import Path
 import numpy as np
 
 from runner.base.sanitize import few, quoted
-from runner.doctor.finding import Finding
+from runner.doctor.finding import DoctorFinding
 from runner.robots.elements import NO_LIMIT, TENSOR, absurd_inertial, moves, number, wrong_places
 from runner.robots.inertials import fix_inertia, impossible_inertia, make_massless, place_of, principal_moments
 from runner.robots.joint_dynamics import hold, rest_position
@@ -20,7 +20,7 @@ _DENSEST = 2e4  # kg/m^3, of metals
 _SMALLEST_PART = 0.3  # of the lengths of all links: the least size of a link for its density
 
 
-def check_joints(tree: UrdfTree, tip: str) -> list[Finding]:
+def check_joints(tree: UrdfTree, tip: str) -> list[DoctorFinding]:
     """Return the problems of the joints of an arm, and fix in place what leaves no choice.
 
     Joints that move and do not lie between base and tip are held: the runner takes serial arms.
@@ -33,7 +33,7 @@ def check_joints(tree: UrdfTree, tip: str) -> list[Finding]:
     return findings
 
 
-def _hold(tree: UrdfTree, name: str, held: float, way: Collection[str]) -> Finding:
+def _hold(tree: UrdfTree, name: str, held: float, way: Collection[str]) -> DoctorFinding:
     joint, tie = tree.joints[name], tree.ties.get(name)
     mimic, unit = joint.find("mimic"), "m" if joint.get("type") == "prismatic" else "rad"
     text = "moves, but not the tip" + (f", and {tie}" if tie else "")
@@ -46,82 +46,88 @@ def _hold(tree: UrdfTree, name: str, held: float, way: Collection[str]) -> Findi
         else ", as it mimics" if mimic is not None
         else ", its limit nearest to zero"
     )  # fmt: skip
-    return Finding("fixed", f"joint '{name}'", text, f"now held at {held:.6g} {unit}{where}")
+    return DoctorFinding("fixed", f"joint '{name}'", text, f"now held at {held:.6g} {unit}{where}")
 
 
-def _check_joint(tree: UrdfTree, name: str) -> list[Finding]:
+def _check_joint(tree: UrdfTree, name: str) -> list[DoctorFinding]:
     joint, place, findings = tree.joints[name], f"joint '{name}'", []
     kind = joint.get("type", "")
     if kind not in ("revolute", "continuous", "prismatic"):
-        return [Finding("refused", place, f"it is {kind or 'of no type'}", "allowed: revolute, prismatic or fixed")]
+        return [
+            DoctorFinding("refused", place, f"it is {kind or 'of no type'}", "allowed: revolute, prismatic or fixed")
+        ]
     if name in tree.ties:
         text = f"it moves the tip and {tree.ties[name]}, and engines would let it move freely"
-        return [Finding("refused", place, text, "take that out, make it fixed, or choose another --tip")]
+        return [DoctorFinding("refused", place, text, "take that out, make it fixed, or choose another --tip")]
     limit = joint.find("limit")
     if limit is None:
         limit = ET.SubElement(joint, "limit")
     if kind == "continuous":
         joint.set("type", "revolute")
         limit.attrib.update(lower=f"-{_NONE}", upper=_NONE)
-        findings.append(Finding("fixed", place, "continuous", "now revolute up to 1e6 rad: without limits"))
+        findings.append(DoctorFinding("fixed", place, "continuous", "now revolute up to 1e6 rad: without limits"))
     findings += _check_positions(place, joint, limit)
     return findings + [finding for key in ("effort", "velocity") for finding in _check_limit(place, limit, key)]
 
 
-def _check_positions(place: str, joint: ET.Element, limit: ET.Element) -> list[Finding]:
+def _check_positions(place: str, joint: ET.Element, limit: ET.Element) -> list[DoctorFinding]:
     lower, upper = number(limit, "lower"), number(limit, "upper")
     if lower < upper:
         return []
     said = "no position limits" if math.isnan(lower) or math.isnan(upper) else f"limits from {lower:g} to {upper:g}"
     if joint.get("type") == "prismatic":
-        return [Finding("refused", place, f"it slides, with {said}", "give lower and upper, in m")]
+        return [DoctorFinding("refused", place, f"it slides, with {said}", "give lower and upper, in m")]
     limit.attrib.update(lower=f"-{_NONE}", upper=_NONE)
-    return [Finding("fixed", place, said, "now 1e6 rad to both sides: without limits")]
+    return [DoctorFinding("fixed", place, said, "now 1e6 rad to both sides: without limits")]
 
 
-def _check_limit(place: str, limit: ET.Element, key: str) -> list[Finding]:
+def _check_limit(place: str, limit: ET.Element, key: str) -> list[DoctorFinding]:
     value = number(limit, key)
     if value > 0.0:
         return []
     limit.set(key, _NONE)
     if math.isnan(value):
-        return [Finding("note", place, f"no {key} limit", "give that of the data sheet, if it matters")]
-    return [Finding("fixed", place, f"{key} limit {value:g}, at which nothing moves", "now 1e6: without limit")]
+        return [DoctorFinding("note", place, f"no {key} limit", "give that of the data sheet, if it matters")]
+    return [DoctorFinding("fixed", place, f"{key} limit {value:g}, at which nothing moves", "now 1e6: without limit")]
 
 
-def check_links(tree: UrdfTree) -> list[Finding]:
+def check_links(tree: UrdfTree) -> list[DoctorFinding]:
     """Return the problems of the inertials of a tree's links, and fix in place what leaves no choice."""
     return [finding for name, link in tree.links.items() for finding in _check_link(tree, name, link)]
 
 
-def _check_link(tree: UrdfTree, name: str, link: ET.Element) -> list[Finding]:
+def _check_link(tree: UrdfTree, name: str, link: ET.Element) -> list[DoctorFinding]:
     place = f"link '{name}'"
     if link.find("inertial/mass") is None:
         bare = link.find("inertial") is None
         make_massless(link)
         text = "no <inertial>: a frame without mass" if bare else "an <inertial> without <mass>"
-        return [Finding("note" if bare else "fixed", place, text, "" if bare else "now without mass")]
+        return [DoctorFinding("note" if bare else "fixed", place, text, "" if bare else "now without mass")]
     findings = _complete(place, link)
     mass = number(link.find("inertial/mass"), "value")
     moments = [number(link.find("inertial/inertia"), key) for key in TENSOR]
     if not 0.0 <= mass < math.inf:
-        return [Finding("refused", place, f"mass {mass:g} kg", "allowed: 0 or more")]
+        return [DoctorFinding("refused", place, f"mass {mass:g} kg", "allowed: 0 or more")]
     if not all(map(math.isfinite, moments)):
-        return [Finding("refused", place, "an inertia that is not a finite number", "write all six moments, in kg m^2")]
-    absurd = [Finding("refused", place, text) for text in absurd_inertial(link)]
+        return [
+            DoctorFinding(
+                "refused", place, "an inertia that is not a finite number", "write all six moments, in kg m^2"
+            )
+        ]
+    absurd = [DoctorFinding("refused", place, text) for text in absurd_inertial(link)]
     if absurd:
         return absurd
     wrong = impossible_inertia(link)
     if wrong:
         fix_inertia(link)
         now = ", ".join(f"{moment:.3g}" for moment in principal_moments(link))
-        findings.append(Finding("fixed", place, wrong[0], f"now {now} kg m^2, the nearest that a body can have"))
+        findings.append(DoctorFinding("fixed", place, wrong[0], f"now {now} kg m^2, the nearest that a body can have"))
     elif mass > 0.0 and not any(moments) and name != tree.root:
-        findings.append(Finding("note", place, "a mass without inertia: a point", "write it, if it matters"))
+        findings.append(DoctorFinding("note", place, "a mass without inertia: a point", "write it, if it matters"))
     return findings
 
 
-def _complete(place: str, link: ET.Element) -> list[Finding]:
+def _complete(place: str, link: ET.Element) -> list[DoctorFinding]:
     """Write zeros for moments of inertia that are missing; Pinocchio would leave the mass out."""
     inertial, inertia = link.find("inertial"), link.find("inertial/inertia")
     missing = [key for key in TENSOR if inertia is None or inertia.get(key) is None]
@@ -131,10 +137,10 @@ def _complete(place: str, link: ET.Element) -> list[Finding]:
     inertia.attrib.update(dict.fromkeys(missing, "0"))
     if number(link.find("inertial/mass"), "value") == 0.0 and len(missing) == len(TENSOR):
         return []
-    return [Finding("fixed", place, f"no inertia {', '.join(missing)}", "now 0")]
+    return [DoctorFinding("fixed", place, f"no inertia {', '.join(missing)}", "now 0")]
 
 
-def check_units(tree: UrdfTree) -> list[Finding]:
+def check_units(tree: UrdfTree) -> list[DoctorFinding]:
     """Return links whose inertia or mass seems to be in other units than kg m^2 and kg."""
     places = {name: float(np.linalg.norm(place_of(joint).translation)) for name, joint in tree.joints.items()}
     whole = sum(places.values())
@@ -152,21 +158,21 @@ def check_units(tree: UrdfTree) -> list[Finding]:
         gyration = math.sqrt(max(float(principal_moments(link)[2]), 0.0) / mass)
         if gyration > whole:
             text = f"a radius of gyration of {gyration:.2g} m on a link of {size:.2g} m"
-            findings.append(Finding("note", f"link '{name}'", text, "kg mm^2? Divide the inertia by 1e6"))
+            findings.append(DoctorFinding("note", f"link '{name}'", text, "kg mm^2? Divide the inertia by 1e6"))
         if mass > _DENSEST * max(size, _SMALLEST_PART * whole) ** 3:
             text = f"a mass of {mass:g} kg on a link of {size:.2g} m, denser than metals"
-            findings.append(Finding("note", f"link '{name}'", text, "g? Divide the mass by 1000"))
+            findings.append(DoctorFinding("note", f"link '{name}'", text, "g? Divide the mass by 1000"))
     return findings
 
 
-def check_placements(tree: UrdfTree) -> list[Finding]:
+def check_placements(tree: UrdfTree) -> list[DoctorFinding]:
     """Return the vectors that are not three finite numbers, and axes without a direction."""
     elements = [(f"link '{name}'", link) for name, link in tree.links.items()]
     elements += [(f"joint '{name}'", joint) for name, joint in tree.joints.items()]
-    return [Finding("refused", place, *wrong) for place, element in elements for wrong in wrong_places(element)]
+    return [DoctorFinding("refused", place, *wrong) for place, element in elements for wrong in wrong_places(element)]
 
 
-def check_meshes(tree: UrdfTree, urdf: Path, packages: Sequence[Path]) -> list[Finding]:
+def check_meshes(tree: UrdfTree, urdf: Path, packages: Sequence[Path]) -> list[DoctorFinding]:
     """Return the meshes that are missing, or outside the folder of the URDF or of their package.
 
     Args:
@@ -187,7 +193,9 @@ def check_meshes(tree: UrdfTree, urdf: Path, packages: Sequence[Path]) -> list[F
         hint = "--package-path DIR names a folder with its package; " if "package://" in found[0] else ""
         if said:
             text = f"{len(found)} of {len(names)} {said}: {few(found)}"
-            findings.append(Finding("note", "meshes", text, f"{hint}runs need none, and draw such links as bones"))
+            findings.append(
+                DoctorFinding("note", "meshes", text, f"{hint}runs need none, and draw such links as bones")
+            )
     return findings
 
 

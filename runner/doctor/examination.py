@@ -14,7 +14,7 @@ from runner.base.sanitize import few
 from runner.config.compose.files import group_options
 from runner.doctor.bodies import check_joints, check_links, check_meshes, check_placements, check_units
 from runner.doctor.engines import compare_engines
-from runner.doctor.finding import Finding, together
+from runner.doctor.finding import DoctorFinding, together
 from runner.doctor.postures import (
     check_gravity,
     check_mass_matrix,
@@ -49,7 +49,7 @@ _GENERAL = {
 _WORDS = {"false", "n", "no", "null", "off", "on", "true", "y", "yes"}  # that YAML takes for something else
 
 
-def choose_name(path: Path, header: str, wanted: str | None) -> tuple[str, Finding]:
+def choose_name(path: Path, header: str, wanted: str | None) -> tuple[str, DoctorFinding]:
     """Return the name of an arm, of lower-case letters, digits and underscores, and what there is to say of it.
 
     It is the one wanted, else that of the file; where that could be any arm's, the one in the file, else that of the
@@ -69,7 +69,7 @@ def choose_name(path: Path, header: str, wanted: str | None) -> tuple[str, Findi
             raise RunnerError(f"--name: '{wanted}'; allowed: a lower-case letter, then such, digits and underscores")
         if wanted in ours:
             raise RunnerError(f"--name: '{wanted}' is one of our robots; choose another name, such as my_{wanted}")
-        return wanted, Finding("note", "name", f"'{wanted}'")
+        return wanted, DoctorFinding("note", "name", f"'{wanted}'")
     whole = path.resolve()
     stem = re.sub(r"(\.(urdf|xml|xacro|mjcf))+$", "", whole.name, flags=re.IGNORECASE)
     names = map(_plain, (stem, header, *(folder.name for folder in whole.parents)))
@@ -77,7 +77,7 @@ def choose_name(path: Path, header: str, wanted: str | None) -> tuple[str, Findi
     name = f"my_{own}" if own in ours else own
     said = [f"'{name}'"] + [f"'{own}' is one of ours"] * (name != own)
     said += [f"the file says '{header}'"] if _plain(header) != own and header else []
-    return name, Finding("note", "name", "; ".join(said), "--name gives another")
+    return name, DoctorFinding("note", "name", "; ".join(said), "--name gives another")
 
 
 def _plain(name: str) -> str:
@@ -89,7 +89,7 @@ _POSTURES = 300
 
 
 @dataclass(frozen=True)
-class Arm:
+class ExaminedArm:
     """An arm that the runner takes.
 
     Attributes:
@@ -123,9 +123,9 @@ class Examination:
     source: Path
     mjcf: Mjcf | None
     tip: str
-    findings: list[Finding]
+    findings: list[DoctorFinding]
     urdf: str
-    arm: Arm | None
+    arm: ExaminedArm | None
 
 
 def examine(
@@ -152,8 +152,8 @@ def examine(
         others = [str(each) for each in (*check_placements(tree), *check_links(tree)) if each.grade == "refused"]
         raise ConfigError([str(error), *others]) if others else error from None
     findings = [named, name_tips(original, tip)]
-    findings += [Finding("note", "names", few(original.renamed))] if original.renamed else []
-    findings += [Finding("fixed", *change) for change in original.changes]
+    findings += [DoctorFinding("note", "names", few(original.renamed))] if original.renamed else []
+    findings += [DoctorFinding("fixed", *change) for change in original.changes]
     findings += [*check_placements(tree), *check_meshes(tree, path, packages)]
     findings += [] if _refused(findings) else check_units(tree)
     impossible = {name: dict(part.attrib) for name, part in _impossible_inertias(tree).items()}
@@ -166,7 +166,7 @@ def examine(
     return Examination(name, path, mjcf, tip, together(findings), urdf, None if _refused(findings) else arm)
 
 
-def _refused(findings: Sequence[Finding]) -> bool:
+def _refused(findings: Sequence[DoctorFinding]) -> bool:
     return any(finding.grade == "refused" for finding in findings)
 
 
@@ -181,7 +181,7 @@ def _impossible_inertias(tree: UrdfTree) -> dict[str, ET.Element]:
     return {name: inertia for name, inertia in complete.items() if impossible_inertia(tree.links[name])}
 
 
-def _describe_mend(tree: UrdfTree, impossible: Mapping[str, Mapping[str, str]], model: RobotModel) -> Finding:
+def _describe_mend(tree: UrdfTree, impossible: Mapping[str, Mapping[str, str]], model: RobotModel) -> DoctorFinding:
     """Return the effect of corrected inertias on the mass matrix, in the middle of the joint ranges."""
     before = copy.deepcopy(tree)
     for name, attributes in impossible.items():
@@ -192,18 +192,22 @@ def _describe_mend(tree: UrdfTree, impossible: Mapping[str, Mapping[str, str]], 
     M, written = model.mass_matrix(q), RobotModel(write_text(before.robot), model.tip_name).mass_matrix(q)
     diagonal = np.sqrt(np.maximum(np.diagonal(M), 1e-300))
     change = float(np.abs((M - written) / np.outer(diagonal, diagonal)).max())
-    return Finding("note", "mass matrix", f"the corrected inertias change it by up to {100.0 * change:.2g} %")
+    return DoctorFinding("note", "mass matrix", f"the corrected inertias change it by up to {100.0 * change:.2g} %")
 
 
-def _take(tree: UrdfTree, source: str, urdf: str, tip: str, findings: list[Finding]) -> Arm | None:
+def _take(tree: UrdfTree, source: str, urdf: str, tip: str, findings: list[DoctorFinding]) -> ExaminedArm | None:
     """Build an arm and look at what it can do; add what is found to the findings. None where that is refused."""
     try:
         model = RobotModel(urdf, tip)
     except ConfigError as error:
-        findings += [Finding("refused", "model", problem.removeprefix("robot.urdf: ")) for problem in error.problems]
+        findings += [
+            DoctorFinding("refused", "model", problem.removeprefix("robot.urdf: ")) for problem in error.problems
+        ]
         return None
     if model.nq == 1:
-        findings.append(Finding("refused", "model", "one joint moves the tip; controllers take arms of two or more"))
+        findings.append(
+            DoctorFinding("refused", "model", "one joint moves the tip; controllers take arms of two or more")
+        )
         return None
     generator, (lower, upper) = np.random.default_rng(0), model.usual_range
     postures = generator.uniform(lower, upper, (_POSTURES, model.nq))
@@ -217,27 +221,27 @@ def _take(tree: UrdfTree, source: str, urdf: str, tip: str, findings: list[Findi
     home, said = judge_home(model, tree.home)
     dynamics = dynamics_of(tree, source, STANDARD_GRAVITY)
     findings += [*said, *_taken(dynamics, model)]
-    return Arm(model, propose(model, postures, home), not massless, dynamics)
+    return ExaminedArm(model, propose(model, postures, home), not massless, dynamics)
 
 
-def _left_out(tree: UrdfTree, mjcf: Mjcf | None) -> list[Finding]:
+def _left_out(tree: UrdfTree, mjcf: Mjcf | None) -> list[DoctorFinding]:
     """Return the properties of a file that runs leave out, and the unused parts of an MJCF.
 
     The copy of a URDF has no such elements. Runs of an MJCF report them again.
     """
     if mjcf is not None:
-        moves = [Finding("note", "left out of the motion", text) for text in mjcf.left_out.motion]
-        return [*moves, *(Finding("note", "left out", text) for text in mjcf.left_out.rest)]
+        moves = [DoctorFinding("note", "left out of the motion", text) for text in mjcf.left_out.motion]
+        return [*moves, *(DoctorFinding("note", "left out", text) for text in mjcf.left_out.rest)]
     elements = tree.robot.findall("left_out")
     for element in elements:
         tree.robot.remove(element)
-    return [Finding("note", "left out of the motion", element.get("text", "")) for element in elements]
+    return [DoctorFinding("note", "left out of the motion", element.get("text", "")) for element in elements]
 
 
-def _taken(dynamics: FileDynamics, model: RobotModel) -> list[Finding]:
+def _taken(dynamics: FileDynamics, model: RobotModel) -> list[DoctorFinding]:
     """Return the values that the config takes from the file, without masses."""
     return [
-        Finding("note", what, by_value(values, model.joint_names), f"--output gives it by {key}")
+        DoctorFinding("note", what, by_value(values, model.joint_names), f"--output gives it by {key}")
         for what, key, values in dynamics.by_key()
         if values.any()
     ]

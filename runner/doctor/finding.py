@@ -12,7 +12,7 @@ GRADES: tuple[Grade, ...] = ("refused", "ask", "fixed", "note")
 
 
 @dataclass(frozen=True)
-class Finding:
+class DoctorFinding:
     """One observation with what was or can be done about it.
 
     Attributes:
@@ -32,7 +32,7 @@ class Finding:
         return f"{self.grade:<7} {self.place}: {self.text}{'; ' if self.remedy else ''}{self.remedy}"
 
 
-def together(findings: Iterable[Finding]) -> list[Finding]:
+def together(findings: Iterable[DoctorFinding]) -> list[DoctorFinding]:
     """Return findings by grade, those of several links or joints in the same words as one."""
     places: dict[tuple[Grade, str, str, str], list[str]] = {}
     for each in findings:
@@ -40,7 +40,7 @@ def together(findings: Iterable[Finding]) -> list[Finding]:
         kind, name = part.groups() if part else (each.place, "")
         places.setdefault((each.grade, kind, each.text, each.remedy), []).append(name)
     found = [
-        Finding(grade, f"{kind}{'s' if len(names) > 1 and names[0] else ''} {few(names)}".rstrip(), text, remedy)
+        DoctorFinding(grade, f"{kind}{'s' if len(names) > 1 and names[0] else ''} {few(names)}".rstrip(), text, remedy)
         for (grade, kind, text, remedy), names in places.items()
     ]
     return sorted(found, key=lambda each: GRADES.index(each.grade))

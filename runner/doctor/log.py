@@ -10,8 +10,8 @@ import numpy as np
 from runner.base.arrays import FloatArray
 from runner.base.errors import RunnerError
 from runner.base.sanitize import few, quoted
-from runner.base.tables import Table
-from runner.doctor.finding import Finding
+from runner.base.tables import NumericTable
+from runner.doctor.finding import DoctorFinding
 from runner.doctor.log_motion import LogMotion, make_motion
 from runner.doctor.log_names import Named, named, writer_of
 from runner.recordings.columns_map import ColumnsMap, factors_of, read_map
@@ -66,16 +66,16 @@ class LogExamination:
         motion: Motion for a run; None without one.
     """
 
-    table: Table
+    table: NumericTable
     writer: str
     time: Meaning | None
     meanings: Sequence[Meaning]
-    findings: Sequence[Finding]
+    findings: Sequence[DoctorFinding]
     recording: Recording | None
     motion: LogMotion | None
 
     @property
-    def questions(self) -> list[Finding]:
+    def questions(self) -> list[DoctorFinding]:
         """Findings that have to be answered."""
         return [finding for finding in self.findings if finding.grade == "ask"]
 
@@ -104,9 +104,9 @@ def examine_log(
     table = read_log(path, None, topic, episode)
     names = list(named(list(table.columns), table.units))
     time, period = _time(table, names)
-    findings = [Finding("note", "rows", note) for note in table.notes]
+    findings = [DoctorFinding("note", "rows", note) for note in table.notes]
     if time is not None and time.asked:
-        findings.append(Finding("ask", time.column, time.asked))
+        findings.append(DoctorFinding("ask", time.column, time.asked))
     if model is None:
         meanings = [Meaning(one.column, {"kind": one.kind}, one.reason) for one in names if one.kind != "time"]
         return LogExamination(table, writer_of(list(table.columns)), time, meanings, findings, None, None)
@@ -114,11 +114,11 @@ def examine_log(
     positions = [one for one in meanings if "joint" in one.keys]
     if not positions:
         raise RunnerError(f"{path}: no columns of joint positions are known; its columns: {few(list(table.columns))}")
-    findings += [Finding("ask", one.column, one.asked) for one in meanings if one.asked]
+    findings += [DoctorFinding("ask", one.column, one.asked) for one in meanings if one.asked]
     found = LogExamination(table, writer_of(list(table.columns)), time, meanings, findings, None, None)
     if (time is None or time.asked) or any(one.asked for one in positions):
         if time is None:
-            findings.append(Finding("ask", "time", "no column of the time is known", "say rate: in Hz"))
+            findings.append(DoctorFinding("ask", "time", "no column of the time is known", "say rate: in Hz"))
         return found
     said = ColumnsMap.model_validate(map_of(found, topic, episode))
     return judge(found, model, said)
@@ -133,7 +133,7 @@ def _examine_given(path: Path, model: RobotModel | None, given: Path) -> LogExam
     keys = said.model_dump(exclude_defaults=True)["columns"]
     meanings = [Meaning(name, keys[name], f"said in {given.name}") for name in said.columns]
     time = None if said.time is None else Meaning(said.time.column, {"unit": said.time.unit}, f"said in {given.name}")
-    notes = [Finding("note", "rows", note) for note in table.notes]
+    notes = [DoctorFinding("note", "rows", note) for note in table.notes]
     return judge(LogExamination(table, writer_of(list(table.columns)), time, meanings, notes, None, None), model, said)
 
 
@@ -153,10 +153,10 @@ def judge(found: LogExamination, model: RobotModel, said: ColumnsMap) -> LogExam
         raise RunnerError(
             f"{recording.path}: the log lasts {recording.duration:.3g} s. Allowed: {_SHORTEST:g} s or more of motion."
         )
-    findings = [Finding("note", "rows", note) for note in recording.notes if note not in found.table.notes]
+    findings = [DoctorFinding("note", "rows", note) for note in recording.notes if note not in found.table.notes]
     if recording.filled:
         gaps = f"{len(recording.filled)} gaps of up to {max(recording.filled):.3g} s"
-        findings.append(Finding("note", "rows", gaps, "--fill-gaps fills them"))
+        findings.append(DoctorFinding("note", "rows", gaps, "--fill-gaps fills them"))
     verdict = check_consistency(model, recording)
     gravity = [question for question in verdict.questions if question.endswith(WITHOUT_GRAVITY)]
     if gravity and len(verdict.questions) == 1:
@@ -169,21 +169,21 @@ def judge(found: LogExamination, model: RobotModel, said: ColumnsMap) -> LogExam
             name: column.model_copy(update={"holds": "without_gravity"}) if column.torque else column
             for name, column in said.columns.items()
         }
-        notes = [*found.findings, Finding("note", "torques", reason, "holds: without_gravity is proposed")]
+        notes = [*found.findings, DoctorFinding("note", "torques", reason, "holds: without_gravity is proposed")]
         without = said.model_copy(update={"columns": columns})
         return judge(replace(found, meanings=meanings, findings=notes), model, without)
-    findings += [Finding("ask", *_split(question)) for question in verdict.questions]
-    findings += [Finding("note", "tip", note) for note in verdict.notes]
+    findings += [DoctorFinding("ask", *_split(question)) for question in verdict.questions]
+    findings += [DoctorFinding("note", "tip", note) for note in verdict.notes]
     findings += _still(model, recording)
     findings += _beyond(model, recording)
     for joint, kinds in verdict.confirmed.items():
         text = f"its sign agrees with {' and '.join(_EVIDENCE[kind] for kind in kinds)}" if kinds else (
             "nothing in the log tells its sign"
         )  # fmt: skip
-        findings.append(Finding("note", f"joint '{joint}'", text))
+        findings.append(DoctorFinding("note", f"joint '{joint}'", text))
     open_positions = any(finding.grade == "ask" for finding in findings)
     motion = None if open_positions else make_motion(model, recording)
-    findings += [] if motion is None else [Finding("note", "motion", note) for note in motion.notes]
+    findings += [] if motion is None else [DoctorFinding("note", "motion", note) for note in motion.notes]
     return replace(found, findings=[*found.findings, *findings], recording=recording, motion=motion)
 
 
@@ -195,16 +195,16 @@ def _split(question: str) -> tuple[str, str]:
     return (place, text) if text and place.startswith("columns") else ("log", question)
 
 
-def _still(model: RobotModel, recording: Recording) -> Iterator[Finding]:
+def _still(model: RobotModel, recording: Recording) -> Iterator[DoctorFinding]:
     q = recording.positions(model.joint_names)
     for joint, swing in zip(model.joint_names, () if q is None else np.ptp(q, axis=0).tolist(), strict=False):
         if swing < 1e-4:
-            yield Finding(
+            yield DoctorFinding(
                 "note", f"joint '{joint}'", f"it does not move ({swing:.2g} rad): its friction cannot be found"
             )
 
 
-def _beyond(model: RobotModel, recording: Recording) -> Iterator[Finding]:
+def _beyond(model: RobotModel, recording: Recording) -> Iterator[DoctorFinding]:
     q = recording.positions(model.joint_names)
     if q is None:
         return
@@ -212,14 +212,14 @@ def _beyond(model: RobotModel, recording: Recording) -> Iterator[Finding]:
     for place, joint in enumerate(model.joint_names):
         out = max(float(q[:, place].max() - upper[place]), float(lower[place] - q[:, place].min()))
         if out > _BEYOND * (upper[place] - lower[place]):
-            yield Finding(
+            yield DoctorFinding(
                 "ask", f"joint '{joint}'",
                 f"it leaves its limits of {lower[place]:.4g} to {upper[place]:.4g} by {out:.3g}",
                 "correct unit, zero, sign or wrap of its column, or choose another robot",
             )  # fmt: skip
 
 
-def _time(table: Table, names: Sequence[Named]) -> tuple[Meaning | None, float]:
+def _time(table: NumericTable, names: Sequence[Named]) -> tuple[Meaning | None, float]:
     """Return the column of the time, and the usual time between two rows in s; 0 if that is not known."""
     times = [one for one in names if one.kind == "time"]
     if not times:
@@ -259,7 +259,9 @@ def _time_unit(column: Named, first: float, step: float) -> tuple[str, str, str]
     return units[0], f"{column.reason}; rows come at {rate(units[0]):.4g} Hz, which no other unit gives", ""
 
 
-def _meanings(table: Table, names: Sequence[Named], model: RobotModel, period: float, path: Path) -> Iterator[Meaning]:
+def _meanings(
+    table: NumericTable, names: Sequence[Named], model: RobotModel, period: float, path: Path
+) -> Iterator[Meaning]:
     joints = model.joint_names
     chosen: dict[str, tuple[list[Named], dict[str, str]]] = {}
     for kind in ("position", "reference", "velocity", "torque", "current"):
@@ -293,7 +295,7 @@ def _meanings(table: Table, names: Sequence[Named], model: RobotModel, period: f
             yield Meaning(one.column, {"tip": one.label, "unit": one.unit or _length(table, one, model)}, one.reason)
 
 
-def _length(table: Table, one: Named, model: RobotModel) -> str:
+def _length(table: NumericTable, one: Named, model: RobotModel) -> str:
     return "m" if float(np.nanmax(np.abs(table.columns[one.column]))) < 4.0 * model.reach else "mm"
 
 
@@ -331,8 +333,8 @@ def _plain(name: str) -> str:
 
 
 def _position(
-    table: Table, one: Named, key: str, joint: str, model: RobotModel, place: int, speed: Named | None, period: float,
-    path: Path,
+    table: NumericTable, one: Named, key: str, joint: str, model: RobotModel, place: int, speed: Named | None,
+    period: float, path: Path,
 ) -> Meaning:  # fmt: skip
     values = table.columns[one.column]
     si = model.joint_units[place]
@@ -406,7 +408,7 @@ def _ratio(values: FloatArray, speeds: FloatArray | None, period: float) -> floa
     return float(slope @ other / (other @ other)) if abs(correlation) > 0.9 else None
 
 
-def _torque(table: Table, one: Named, joint: str, model: RobotModel, place: int) -> Meaning:
+def _torque(table: NumericTable, one: Named, joint: str, model: RobotModel, place: int) -> Meaning:
     si = "N m" if model.joint_units[place] == "rad" else "N"
     values = table.columns[one.column]
     largest = float(np.nanmax(np.abs(values)))

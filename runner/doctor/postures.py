@@ -4,7 +4,7 @@ import numpy as np
 
 from runner.base.arrays import FloatArray
 from runner.base.sanitize import few
-from runner.doctor.finding import Finding
+from runner.doctor.finding import DoctorFinding
 from runner.robots.elements import number
 from runner.robots.model import RobotModel
 from runner.robots.task_space import task_basis
@@ -17,7 +17,7 @@ _CONDITION = 10.0  # of a Jacobian, above which a posture counts as nearly singu
 SINGULAR = 0.1  # of the reach: the smallest singular value below which controllers damp
 
 
-def check_gravity(model: RobotModel, postures: FloatArray) -> list[Finding]:
+def check_gravity(model: RobotModel, postures: FloatArray) -> list[DoctorFinding]:
     """Return the joints that cannot support the arm's weight in each of some postures, shape (N, nq)."""
     largest = np.abs([model.gravity_torque(q) for q in postures]).max(axis=0)
     findings = []
@@ -27,18 +27,20 @@ def check_gravity(model: RobotModel, postures: FloatArray) -> list[Finding]:
         torque = "N" if unit == "m" else "N m"
         if need > effort:
             text = f"gravity asks for up to {need:.3g} {torque}, and its effort limit is {effort:.3g} {torque}"
-            findings.append(Finding("note", f"joint '{name}'", text, "check masses and effort; or keep it upright"))
+            findings.append(
+                DoctorFinding("note", f"joint '{name}'", text, "check masses and effort; or keep it upright")
+            )
     if not findings:
         share = largest / model.effort_limits
         most = int(np.argmax(share if share.any() else largest))
         unit = "N" if model.prismatic[most] else "N m"
         limit = f", {100.0 * share[most]:.2g} % of its effort limit" if share[most] else ", and has no effort limit"
         text = f"joint '{model.joint_names[most]}' supports most: up to {largest[most]:.3g} {unit}{limit}"
-        findings.append(Finding("note", "gravity", text))
+        findings.append(DoctorFinding("note", "gravity", text))
     return findings
 
 
-def check_mass_matrix(tree: UrdfTree, model: RobotModel, postures: FloatArray) -> list[Finding]:
+def check_mass_matrix(tree: UrdfTree, model: RobotModel, postures: FloatArray) -> list[DoctorFinding]:
     """Return why torques cannot move the arm, whose mass matrix is singular in one of some postures, shape (N, nq)."""
     least = min(float(np.linalg.eigvalsh(_scaled(model.mass_matrix(q)))[0]) for q in postures)
     if least > _REGULAR:
@@ -47,7 +49,9 @@ def check_mass_matrix(tree: UrdfTree, model: RobotModel, postures: FloatArray) -
     free = [joint for joint in model.joint_names if not any(joint in tree.way(link) for link in heavy)]
     why = "no link has a mass" if len(free) == model.nq else f"no mass behind {few(free)}" if free else _NO_INERTIA
     text = f"{why}: torques cannot move it; the config takes plant=kinematic, whose joints follow every command"
-    return [Finding("note", "mass", text, "for torques, give the links behind every joint <inertial> with their mass")]
+    return [
+        DoctorFinding("note", "mass", text, "for torques, give the links behind every joint <inertial> with their mass")
+    ]
 
 
 def _scaled(M: FloatArray) -> FloatArray:
@@ -55,19 +59,21 @@ def _scaled(M: FloatArray) -> FloatArray:
     return np.asarray(M / np.outer(size, size))
 
 
-def check_tasks(model: RobotModel) -> list[Finding]:
+def check_tasks(model: RobotModel) -> list[DoctorFinding]:
     """Return the tasks for which the arm has enough joints."""
     position, pose = (len(task_basis(model, turned)) for turned in (False, True))
     if not position:
         text = f"no joint moves '{model.tip_name}' from its place: the axes pass through it"
-        return [Finding("refused", "tip", text, "choose another by --tip, or add a link at the tool centre point")]
+        return [
+            DoctorFinding("refused", "tip", text, "choose another by --tip, or add a link at the tool centre point")
+        ]
     if position > model.nq:
         text = f"{model.nq} joints move the tip in {position} dependent directions: no built-in controller fits"
-        return [Finding("refused", "tasks", text, "choose another by --tip")]
+        return [DoctorFinding("refused", "tasks", text, "choose another by --tip")]
     where = {3: "in 3 directions", 2: "in a plane", 1: "along a line"}[position]
     turned = f"a pose has {pose} dimensions" + ("" if pose <= model.nq else ", more than there are joints")
     spare = f", {model.nq - position} of them redundant," if model.nq > position else ""
-    return [Finding("note", "tasks", f"{model.nq} joints{spare} move the tip {where}; {turned}")]
+    return [DoctorFinding("note", "tasks", f"{model.nq} joints{spare} move the tip {where}; {turned}")]
 
 
 def smallest_singular_values(model: RobotModel, postures: FloatArray, pose: bool) -> FloatArray:
@@ -87,7 +93,7 @@ def _singular_values(model: RobotModel, postures: FloatArray, pose: bool) -> Flo
     return np.asarray(np.linalg.svd(np.array(J), compute_uv=False))
 
 
-def describe_singular(model: RobotModel, postures: FloatArray) -> list[Finding]:
+def describe_singular(model: RobotModel, postures: FloatArray) -> list[DoctorFinding]:
     """Return the fraction of postures, shape (N, nq), that are nearly singular for the tip's position."""
     if model.nq < len(task_basis(model, pose=False)):
         return []
@@ -96,16 +102,18 @@ def describe_singular(model: RobotModel, postures: FloatArray) -> list[Finding]:
     worst = postures[int(smallest.argmin())]
     if smallest.max() < 1e-9 * model.reach:
         text = "the tip's position is singular in every posture: a joint's axis passes through it"
-        return [Finding("refused", "tip", text, "choose another by --tip, or add a link at the tool centre point")]
+        return [
+            DoctorFinding("refused", "tip", text, "choose another by --tip, or add a link at the tool centre point")
+        ]
     share = float((values[:, 0] > _CONDITION * smallest).mean())
     text = (
         f"in {100.0 * share:.0f} % of all postures the Jacobian of the tip's position has a condition number above "
         f"{_CONDITION:g}; the nearest to a singular one that was found is q = {np.round(worst, 2).tolist()}"
     )
-    return [Finding("note", "singular postures", text, "keep paths away, or singularity_damping above 0")]
+    return [DoctorFinding("note", "singular postures", text, "keep paths away, or singularity_damping above 0")]
 
 
-def describe_workspace(model: RobotModel, generator: np.random.Generator) -> list[Finding]:
+def describe_workspace(model: RobotModel, generator: np.random.Generator) -> list[DoctorFinding]:
     """Return the range of distances of the tip from the first joint, and of its heights."""
     found = analyse(model, 200, generator)
     near, far, low, high = np.round([found.inner, found.outer, *np.quantile(found.tips[:, 2], (0.0, 1.0))], 3)
@@ -113,4 +121,4 @@ def describe_workspace(model: RobotModel, generator: np.random.Generator) -> lis
         f"the tip comes {near:g} to {far:g} m from the first joint at {np.round(model.shoulder, 3).tolist()} m, "
         f"and was seen at heights from {low:g} to {high:g} m"
     )
-    return [Finding("note", "workspace", text)]
+    return [DoctorFinding("note", "workspace", text)]

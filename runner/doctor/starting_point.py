@@ -6,7 +6,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from runner.base.arrays import FloatArray
-from runner.doctor.finding import Finding
+from runner.doctor.finding import DoctorFinding
 from runner.doctor.postures import SINGULAR, smallest_singular_values
 from runner.robots.model import RobotModel
 from runner.robots.task_space import distance_beside, task_basis
@@ -45,7 +45,7 @@ def propose(model: RobotModel, postures: FloatArray, home: FloatArray | None) ->
     return StartingPoint(home, goal, _natural_frequency(model, home, goal))
 
 
-def judge_home(model: RobotModel, given: Mapping[str, float]) -> tuple[FloatArray | None, list[Finding]]:
+def judge_home(model: RobotModel, given: Mapping[str, float]) -> tuple[FloatArray | None, list[DoctorFinding]]:
     """Return the posture of a file's keyframe `home`, by joint, and what there is to say of it.
 
     It is None where there is none, or where it does not serve as a home: beyond limits, singular, or too heavy to hold.
@@ -64,8 +64,8 @@ def judge_home(model: RobotModel, given: Mapping[str, float]) -> tuple[FloatArra
     if not wrong and (np.abs(model.gravity_torque(home)) > model.effort_limits).any():
         wrong = ["gravity asks for more there than the effort limits"]
     if wrong:
-        return None, [Finding("note", "home", f"the keyframe 'home' is not taken: {'; '.join(wrong)}")]
-    return home, [Finding("note", "home", "the keyframe 'home' is taken")]
+        return None, [DoctorFinding("note", "home", f"the keyframe 'home' is not taken: {'; '.join(wrong)}")]
+    return home, [DoctorFinding("note", "home", "the keyframe 'home' is taken")]
 
 
 def _home(model: RobotModel, postures: FloatArray) -> FloatArray:

@@ -4,7 +4,7 @@ import re
 
 from runner.base.errors import RunnerError, nearest
 from runner.base.sanitize import few
-from runner.doctor.finding import Finding
+from runner.doctor.finding import DoctorFinding
 from runner.robots.elements import end_of, moves
 from runner.robots.tree import UrdfTree
 
@@ -51,7 +51,7 @@ def choose_tip(tree: UrdfTree, wanted: str | None) -> str:
     )
 
 
-def name_tips(tree: UrdfTree, tip: str) -> Finding:
+def name_tips(tree: UrdfTree, tip: str) -> DoctorFinding:
     """Return the link that is the tip, and other candidates: with the same joints, or with more or fewer."""
     same = [frame for frame in frames_at(tree, tip) if frame != tip]
     told = [f"--tip takes another that the same joints move: {few(same)}"] if same else []
@@ -64,7 +64,7 @@ def name_tips(tree: UrdfTree, tip: str) -> Finding:
     }
     if behind:
         told.append(f"or one behind further joints: {few([f'{link} ({joint})' for link, joint in behind.items()])}")
-    return Finding("note", "tip", f"'{tip}', moved by {len(way)} joints", "; ".join(told))
+    return DoctorFinding("note", "tip", f"'{tip}', moved by {len(way)} joints", "; ".join(told))
 
 
 def frames_at(tree: UrdfTree, link: str) -> list[str]:

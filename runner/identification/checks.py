@@ -37,7 +37,7 @@ class Flag:
 
 
 @dataclass(frozen=True)
-class PayloadChange:
+class MassChange:
     """A change of the mass at the tip within a log.
 
     Attributes:
@@ -113,7 +113,7 @@ def _is_exact(fit: Fit) -> bool:
     return float(np.linalg.norm(fit.rest[used])) < 1e-9 * float(np.linalg.norm(fit.system.y[used]))
 
 
-def find_payload_changes(fit: Fit, logs: Sequence[LogRows]) -> Iterator[PayloadChange]:
+def find_payload_changes(fit: Fit, logs: Sequence[LogRows]) -> Iterator[MassChange]:
     """Yield a change of the mass at the tip within each log, if the residuals show one."""
     if _is_exact(fit):
         return
@@ -130,7 +130,7 @@ def find_payload_changes(fit: Fit, logs: Sequence[LogRows]) -> Iterator[PayloadC
             if t and doubt < _PAYLOAD_DOUBT and abs(mass) > _LEAST_PAYLOAD and abs(t) > best[0]:
                 best = abs(t), time, mass
         if best[0]:
-            yield PayloadChange(rows.name, best[1], best[2])
+            yield MassChange(rows.name, best[1], best[2])
 
 
 @dataclass(frozen=True)

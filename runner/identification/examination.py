@@ -12,7 +12,7 @@ from runner.identification.checks import find_payload_changes
 from runner.identification.fit import Fit, fit_logs, name_of
 from runner.identification.friction_kinds import TERMS
 from runner.identification.log_rows import LogRows, read_rows
-from runner.identification.parameters import Sum, base_sums
+from runner.identification.parameters import ParameterSum, base_sums
 from runner.identification.result import Untold
 from runner.recordings.columns_map import AMPERE, ColumnsMap, read_map
 from runner.recordings.consistency import check_consistency
@@ -26,7 +26,7 @@ _NOISY = 10.0  # times the noise of its positions, below which the acceleration 
 
 
 @dataclass(frozen=True)
-class Question:
+class ArmLogs:
     """The logs of an arm.
 
     Attributes:
@@ -58,7 +58,7 @@ class Question:
 
 def read_question(
     robot: str, model: RobotModel, urdf: str, logs: Sequence[Path], maps: Sequence[Path], fill_gaps: float = 0.0
-) -> Question:
+) -> ArmLogs:
     """Read the logs of an arm.
 
     Args:
@@ -93,11 +93,11 @@ def read_question(
         notes.append([*recording.notes, *verdict.notes])
     if len({(recording.side, recording.held) for recording in recordings}) > 1:
         raise RunnerError("--columns: the maps differ in side or torque. Allowed: torques of one kind in all logs.")
-    return Question(robot, model, urdf, recordings, found, notes)
+    return ArmLogs(robot, model, urdf, recordings, found, notes)
 
 
 @dataclass(frozen=True)
-class Examination:
+class IdentificationExamination:
     """What logs can determine.
 
     Attributes:
@@ -110,8 +110,8 @@ class Examination:
         notes: What is unusual about each log.
     """
 
-    question: Question
-    sums: Sequence[Sum]
+    question: ArmLogs
+    sums: Sequence[ParameterSum]
     rows: Sequence[LogRows]
     fit: Fit
     untold: Sequence[Untold]
@@ -119,7 +119,7 @@ class Examination:
     notes: Sequence[Sequence[str]]
 
 
-def examine_logs(question: Question) -> Examination:
+def examine_logs(question: ArmLogs) -> IdentificationExamination:
     """Return the parameters that logs can determine, from their motion and a fit with viscous and Coulomb friction."""
     sums = base_sums(question.model, question.rotors)
     progress.begin("reading the equations of motion")
@@ -135,15 +135,15 @@ def examine_logs(question: Question) -> Examination:
         for change in find_payload_changes(fit, rows)
     ]
     notes = [[*own, *_unusual(question.model, each)] for own, each in zip(question.notes, rows, strict=True)]
-    return Examination(question, sums, rows, fit, list(find_untold(question, sums, fit)), payloads, notes)
+    return IdentificationExamination(question, sums, rows, fit, list(find_untold(question, sums, fit)), payloads, notes)
 
 
-def usual_cutoff(question: Question) -> float:
+def usual_cutoff(question: ArmLogs) -> float:
     """Return the cut-off frequency that suits the rate of all logs, in Hz."""
     return min(cutoff(recording.period) for recording in question.recordings)
 
 
-def rows_of(question: Question, sums: Sequence[Sum], frequency: float) -> list[LogRows]:
+def rows_of(question: ArmLogs, sums: Sequence[ParameterSum], frequency: float) -> list[LogRows]:
     """Return the equations at the rows of all logs, behind a low-pass with a cut-off in Hz."""
     model = question.model if question.rotors else question.model.with_armature(np.zeros(question.model.nq))
     return [
@@ -177,7 +177,7 @@ def _unusual(model: RobotModel, rows: LogRows) -> Iterator[str]:
         )
 
 
-def find_untold(question: Question, sums: Sequence[Sum], fit: Fit) -> Iterator[Untold]:
+def find_untold(question: ArmLogs, sums: Sequence[ParameterSum], fit: Fit) -> Iterator[Untold]:
     """Yield the parameters that a fit cannot tell, or only to an interval as wide as the torque."""
     names, joints = [each.name for each in sums], question.model.joint_names
     layout = fit.state.layout
@@ -222,7 +222,7 @@ def find_weak(fit: Fit) -> list[int]:
     return [column for column in fit.taken if column != delay and not _moved(fit, column) <= _WEAK]
 
 
-def _motion_for(column: int, base: int, sums: Sequence[Sum], joints: Sequence[str], terms: int) -> str:
+def _motion_for(column: int, base: int, sums: Sequence[ParameterSum], joints: Sequence[str], terms: int) -> str:
     """Return a motion that would determine a column."""
     if column >= base:
         joint = joints[(column - base) // terms]

@@ -11,8 +11,8 @@ from runner.base.arrays import FloatArray
 from runner.base.errors import RunnerError
 from runner.identification.checks import SecondMethod, find_flags, second_method
 from runner.identification.examination import (
-    Examination,
-    Question,
+    ArmLogs,
+    IdentificationExamination,
     columns_in_sum,
     find_untold,
     find_weak,
@@ -23,15 +23,15 @@ from runner.identification.fit import Fit, fit_logs, name_of
 from runner.identification.friction_kinds import KINDS, SHAPED, TERMS, FrictionKind, term_unit
 from runner.identification.held_out import HeldOut, file_share, joint_weights, predict_held_out
 from runner.identification.log_rows import LogRows
-from runner.identification.parameters import Sum
+from runner.identification.parameters import ParameterSum
 from runner.identification.physical import describe_bodies, nearest_bodies
 from runner.identification.prior import combine_with_prior, prior_widths
 from runner.identification.result import (
     Alternative,
     Identification,
+    IdentifiedParameter,
     JointAccuracy,
     LogFacts,
-    Parameter,
     place_of,
 )
 from runner.recordings import digest_of
@@ -45,7 +45,7 @@ _FASTEST = 0.2  # of the rate of rows: the highest cut-off
 
 
 def identify(
-    examined: Examination,
+    examined: IdentificationExamination,
     outputs: Path,
     command: str,
     kind: FrictionKind | None = None,
@@ -165,19 +165,19 @@ def _follows(fit: Fit, rows: Sequence[LogRows], model: RobotModel) -> list[str]:
     ]
 
 
-def _file(question: Question, sums: Sequence[Sum]) -> FloatArray:
+def _file(question: ArmLogs, sums: Sequence[ParameterSum]) -> FloatArray:
     """Return the parameters of the robot's file that are in the sums."""
     model = question.model
     armature = model.armature if question.rotors else np.zeros(model.nq)
     return np.concatenate([model.inertial_parameters, armature])[: len(sums[0].factors)]
 
 
-def _file_values(question: Question, sums: Sequence[Sum]) -> FloatArray:
+def _file_values(question: ArmLogs, sums: Sequence[ParameterSum]) -> FloatArray:
     full = _file(question, sums)
     return np.array([float(each.factors @ full) for each in sums])
 
 
-def _bodies(question: Question, sums: Sequence[Sum], fit: Fit, second: SecondMethod) -> str:
+def _bodies(question: ArmLogs, sums: Sequence[ParameterSum], fit: Fit, second: SecondMethod) -> str:
     """Return a sentence on the bodies that have the values that the logs determine."""
     base = fit.state.layout.base
     told = [(place, column) for place, column in enumerate(fit.taken) if column < base and second.halves[column] > 0.0]
@@ -192,8 +192,8 @@ def _bodies(question: Question, sums: Sequence[Sum], fit: Fit, second: SecondMet
 
 
 def _with_prior(
-    question: Question, sums: Sequence[Sum], fit: Fit, second: SecondMethod, base: FloatArray, width: float
-) -> Iterator[Parameter]:
+    question: ArmLogs, sums: Sequence[ParameterSum], fit: Fit, second: SecondMethod, base: FloatArray, width: float
+) -> Iterator[IdentifiedParameter]:
     """Yield the parameters by the logs and by the robot's file; the logs' own value stands where they tell it."""
     layout, joints = fit.state.layout, question.model.joint_names
     names, factors = [each.name for each in sums], np.array([each.factors for each in sums])
@@ -205,7 +205,7 @@ def _with_prior(
         told = column in fit.taken and bool(np.isfinite(second.halves[column]))
         value, share = float(found.values[column]), float(found.shares[column])
         inertial = column < layout.base
-        yield Parameter(
+        yield IdentifiedParameter(
             name_of(layout, column, names, joints), _unit(question, sums, fit, column), value,
             float(found.halves[column]), float(fit.white[column]) if told else float(found.halves[column]),
             float(base[column]) if inertial else None, float(second.values[column]) if told else value,
@@ -214,7 +214,7 @@ def _with_prior(
         )  # fmt: skip
 
 
-def _unit(question: Question, sums: Sequence[Sum], fit: Fit, column: int) -> str:
+def _unit(question: ArmLogs, sums: Sequence[ParameterSum], fit: Fit, column: int) -> str:
     layout = fit.state.layout
     if column < layout.base:
         return sums[column].unit
@@ -223,14 +223,14 @@ def _unit(question: Question, sums: Sequence[Sum], fit: Fit, column: int) -> str
 
 
 def _parameter(
-    question: Question, sums: Sequence[Sum], fit: Fit, column: int, second: SecondMethod, base: FloatArray,
-) -> Parameter:  # fmt: skip
+    question: ArmLogs, sums: Sequence[ParameterSum], fit: Fit, column: int, second: SecondMethod, base: FloatArray,
+) -> IdentifiedParameter:  # fmt: skip
     layout, joints = fit.state.layout, question.model.joint_names
     names = [each.name for each in sums]
     inertial = column < layout.base
     place = fit.taken.index(column)
     others = [other for other in range(layout.delay) if other not in fit.taken and place in columns_in_sum(fit, other)]
-    return Parameter(
+    return IdentifiedParameter(
         name_of(layout, column, names, joints), _unit(question, sums, fit, column), float(fit.state.values[column]),
         float(second.halves[column]),
         float(fit.white[column]), float(base[column]) if inertial else None, float(second.values[column]),
@@ -240,7 +240,7 @@ def _parameter(
 
 
 def _accuracy(
-    question: Question, rows: Sequence[LogRows], fit: Fit, held: HeldOut, base: FloatArray, joint: int
+    question: ArmLogs, rows: Sequence[LogRows], fit: Fit, held: HeldOut, base: FloatArray, joint: int
 ) -> JointAccuracy:
     system = fit.system
     own = np.flatnonzero(system.joint == joint)

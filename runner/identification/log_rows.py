@@ -11,9 +11,9 @@ from numpy.typing import NDArray
 from runner.base.arrays import FloatArray
 from runner.base.errors import RunnerError
 from runner.identification.friction_kinds import JointSpeeds
-from runner.identification.parameters import Sum
+from runner.identification.parameters import ParameterSum
 from runner.recordings.columns_map import Signal, stacked
-from runner.recordings.equations import Motion, motion_of
+from runner.recordings.equations import EvenRows, motion_of
 from runner.recordings.recording import Recording
 from runner.recordings.smoothing import derivative, evenly
 from runner.robots.model import RobotModel
@@ -34,7 +34,7 @@ class LogRows:
     """
 
     name: str
-    motion: Motion
+    motion: EvenRows
     Y: FloatArray
     base: FloatArray
 
@@ -78,7 +78,7 @@ class LogRows:
 
 
 def read_rows(
-    recording: Recording, model: RobotModel, sums: Sequence[Sum], rotors: bool, frequency: float, name: str
+    recording: Recording, model: RobotModel, sums: Sequence[ParameterSum], rotors: bool, frequency: float, name: str
 ) -> LogRows:
     """Return the equations at the rows of a log.
 
@@ -123,7 +123,7 @@ def read_rows(
     return log_rows(motion, sums, rotors, name)
 
 
-def log_rows(motion: Motion, sums: Sequence[Sum], rotors: bool, name: str) -> LogRows:
+def log_rows(motion: EvenRows, sums: Sequence[ParameterSum], rotors: bool, name: str) -> LogRows:
     """Return the equations at rows; see read_rows."""
     Y = motion.regressor()
     if rotors:

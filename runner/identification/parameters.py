@@ -11,7 +11,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from runner.base.arrays import FloatArray
-from runner.recordings.equations import Motion
+from runner.recordings.equations import EvenRows
 from runner.robots.model import RobotModel
 
 _ORDER = (1, 2, 3, 4, 5, 6, 7, 8, 9, 0)  # of a link's parameters: masses last, so that sums are named by moments
@@ -22,7 +22,7 @@ _ZERO = 1e-7  # a smaller factor is rounding
 
 
 @dataclass(frozen=True)
-class Sum:
+class ParameterSum:
     """A linear combination of parameters that the torques can determine.
 
     Attributes:
@@ -56,7 +56,7 @@ def parameter_units(model: RobotModel) -> list[str]:
     return [*(model.nq * _UNITS), *("kg" if prismatic else "kg m^2" for prismatic in model.prismatic)]
 
 
-def base_sums(model: RobotModel, rotors: bool) -> list[Sum]:
+def base_sums(model: RobotModel, rotors: bool) -> list[ParameterSum]:
     """Return the sums of inertial parameters that torques can determine, if the motion is rich enough.
 
     Args:
@@ -75,18 +75,18 @@ def base_sums(model: RobotModel, rotors: bool) -> list[Sum]:
     for column, row in zip(taken, factors, strict=True):
         whole = np.zeros(len(names))
         whole[: len(row)] = np.where(np.abs(row) > _ZERO, row, 0.0)
-        found.append(Sum(sum_name(whole, names, column), units[column], column, whole))
+        found.append(ParameterSum(sum_name(whole, names, column), units[column], column, whole))
     return found
 
 
-def _states(model: RobotModel) -> Motion:
+def _states(model: RobotModel) -> EvenRows:
     """Return spread motions of an arm: fractions of multiples of square roots, which are no multiples of each other."""
     roots = np.sqrt(np.array([n for n in range(2, 2000) if all(n % k for k in range(2, int(n**0.5) + 1))]))
     count, nq = _STATES * model.nq, model.nq
     spread = np.outer(np.arange(1, count + 1), roots[: 3 * nq]) % 1.0
     q, dq, ddq = (2.0 * part - 1.0 for part in np.split(spread, 3, axis=1))
     q = q * np.where(model.prismatic, 1.0, np.pi)
-    return Motion(model, 1.0, 1.0, q, 3.0 * dq, 9.0 * ddq, np.sign(dq), np.zeros_like(q), np.zeros(nq), nq * ("",))
+    return EvenRows(model, 1.0, 1.0, q, 3.0 * dq, 9.0 * ddq, np.sign(dq), np.zeros_like(q), np.zeros(nq), nq * ("",))
 
 
 def group_columns(X: FloatArray, order: Sequence[int], tolerance: float) -> tuple[list[int], FloatArray]:

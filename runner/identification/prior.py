@@ -17,7 +17,7 @@ _UNKNOWN = 1e3  # kg m^2 or kg: of a rotor whose inertia the file lacks
 
 
 @dataclass(frozen=True)
-class Combined:
+class WithPrior:
     """Values of all columns with a prior for the sums of inertial parameters.
 
     Attributes:
@@ -49,7 +49,7 @@ def prior_widths(full: FloatArray, links: int, width: float) -> FloatArray:
     return np.concatenate([width * widths.ravel(), np.where(rotors > 0.0, width * rotors, _UNKNOWN)])
 
 
-def combine_with_prior(fit: Fit, halves: FloatArray, base: FloatArray, covariance: FloatArray) -> Combined:
+def combine_with_prior(fit: Fit, halves: FloatArray, base: FloatArray, covariance: FloatArray) -> WithPrior:
     """Return the values of a fit and of a file, combined.
 
     Args:
@@ -79,7 +79,7 @@ def combine_with_prior(fit: Fit, halves: FloatArray, base: FloatArray, covarianc
     values[columns] = posterior @ right
     own[columns] = 1.96 * np.sqrt(np.diagonal(posterior))
     shares[:nb] = np.clip(np.diagonal(posterior @ of_prior)[:nb], 0.0, 1.0)
-    return Combined(values, own, shares)
+    return WithPrior(values, own, shares)
 
 
 def _correlation(fit: Fit) -> FloatArray:

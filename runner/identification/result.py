@@ -19,7 +19,7 @@ _REMEDY = "the identification's command writes it again"
 
 
 @dataclass(frozen=True)
-class Parameter:
+class IdentifiedParameter:
     """A parameter of the torques that the logs determine.
 
     Attributes:
@@ -184,7 +184,7 @@ class Identification:
     kind: str
     forced: bool
     frequency: float
-    parameters: Sequence[Parameter]
+    parameters: Sequence[IdentifiedParameter]
     untold: Sequence[Untold]
     joints: Sequence[JointAccuracy]
     held_out: float

@@ -3,9 +3,9 @@
 from collections.abc import Iterator, Sequence
 
 from runner.base.quantities import quantity
-from runner.identification.examination import Examination
+from runner.identification.examination import IdentificationExamination
 from runner.identification.friction_kinds import WORDS
-from runner.identification.result import Identification, Parameter
+from runner.identification.result import Identification, IdentifiedParameter
 
 BEHIND_GEARS = (
     "The sensors are behind the gears: rotor inertias and the friction of the gears are not in these torques. What is "
@@ -71,7 +71,7 @@ def doubts(found: Identification) -> Iterator[str]:
     yield from _of_logs(found)
 
 
-def _is_impossible(one: Parameter) -> bool:
+def _is_impossible(one: IdentifiedParameter) -> bool:
     below = one.value + one.half < 0.0
     return below and (one.name.startswith(("viscous", "coulomb", "sigmoid", "Ia")) or _is_inertia(one.name))
 
@@ -123,7 +123,7 @@ def method_lines(found: Identification) -> Iterator[str]:
         )
 
 
-def examination_lines(found: Examination) -> Iterator[str]:
+def examination_lines(found: IdentificationExamination) -> Iterator[str]:
     """Yield what logs can determine, what not and which motion would, and what is unusual about them."""
     question, fit = found.question, found.fit
     determined = len(fit.taken) - (fit.state.layout.delay in fit.taken)

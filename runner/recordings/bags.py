@@ -19,7 +19,7 @@ from typing import IO, Any, NamedTuple
 from runner.base.errors import RunnerError, nearest
 from runner.base.limits import BAG, BAG_MEMORY, LOG_FILES, ExcessError, bounded_memory
 from runner.base.sanitize import few, quoted
-from runner.base.tables import Table
+from runner.base.tables import NumericTable
 from runner.recordings.messages import JointStates, decode, type_of
 
 MAGIC = {b"#ROSBAG V": "ROS 1 bag", b"\x89MCAP0": "MCAP", b"SQLite format 3": "SQLite bag of ROS 2"}
@@ -72,7 +72,7 @@ def _natural(path: Path) -> list[tuple[int, str]]:
     return [(int(part), "") for part in digits] + [(0, path.name)]
 
 
-def read_bag(path: Path, topic: str | None) -> Table:
+def read_bag(path: Path, topic: str | None) -> NumericTable:
     """Return the joint states of a bag.
 
     Messages that name other joints, as those of a gripper on the same topic, have rows of their own. A message counts
@@ -104,7 +104,7 @@ def read_bag(path: Path, topic: str | None) -> Table:
     kind = contents.topics[chosen].replace("/msg/", "/")
     others = [f"{name} ({kind})" for name, kind in contents.topics.items() if name != chosen]
     form = f"{form_of(files[0])}{f', {len(files)} files' if len(files) > 1 else ''}, {chosen} ({kind})"
-    return Table(path, form, columns, others=tuple(others), notes=tuple(contents.notes))
+    return NumericTable(path, form, columns, others=tuple(others), notes=tuple(contents.notes))
 
 
 def _collect(file: Path, topic: str | None, contents: _Contents, found: dict[str, JointStates]) -> None:

@@ -61,7 +61,7 @@ class TimeColumn(StrictModel):
     unit: str
 
 
-class Column(StrictModel):
+class MappedColumn(StrictModel):
     """Signal of a column: a joint, a torque or a coordinate of the tip.
 
     The signal is sign (value - zero) times its unit, after jumps by `wrap` are removed.
@@ -104,7 +104,7 @@ class Column(StrictModel):
     side: Side | None = None
 
     @model_validator(mode="after")
-    def _check(self) -> "Column":
+    def _check(self) -> "MappedColumn":
         given = [name for name in (*MOTION, "tip") if getattr(self, name) is not None]
         if len(given) != 1:
             found = f"found {' and '.join(given)}" if given else "found none of them"
@@ -163,7 +163,7 @@ class ColumnsMap(StrictModel):
 
     time: TimeColumn | None = None
     rate: PositiveFloat | None = None
-    columns: dict[str, Column] = Field(min_length=1)
+    columns: dict[str, MappedColumn] = Field(min_length=1)
     torque: Literal["held", "instant"] = "held"
     topic: str | None = None
     episode: NonNegativeInt | None = None

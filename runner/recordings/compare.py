@@ -14,7 +14,7 @@ from runner.recordings.consistency import check_consistency
 from runner.recordings.friction import Friction, identify_friction
 from runner.recordings.offset import Offset, find_lag, find_offset
 from runner.recordings.recording import FEWEST_ROWS, Recording, read_recording
-from runner.recordings.setting import Setting, both_metrics, setting_of
+from runner.recordings.setting import ComparedRun, both_metrics, setting_of
 from runner.recordings.smoothing import cutoff, derivative, evenly, low_pass
 from runner.robots.model import RobotModel
 from runner.store import Run
@@ -189,7 +189,7 @@ def compare_recording(
     )
 
 
-def _lags(recording: Recording, setting: Setting) -> Iterator[tuple[str, tuple[float, float]]]:
+def _lags(recording: Recording, setting: ComparedRun) -> Iterator[tuple[str, tuple[float, float]]]:
     """Yield how much later each joint moves than its command, in the recording and in the run, in s."""
     trace = setting.trace
     for command in recording.of_kind("reference"):

@@ -49,7 +49,7 @@ WITHOUT_GRAVITY = f"Say {_NO_GRAVITY}."
 
 
 @dataclass(frozen=True)
-class Verdict:
+class LogVerdict:
     """What the signals of a log say of each other.
 
     Attributes:
@@ -87,7 +87,7 @@ class _Meaning:
     change: _Change
 
 
-def check_consistency(model: RobotModel, recording: Recording) -> Verdict:
+def check_consistency(model: RobotModel, recording: Recording) -> LogVerdict:
     """Return the contradictions between the signals of a log.
 
     Args:
@@ -98,9 +98,9 @@ def check_consistency(model: RobotModel, recording: Recording) -> Verdict:
     q = recording.positions(joints)
     questions = [*_empty_torques(recording), *_slow_rows(recording)]
     if questions or q is None:
-        return Verdict(tuple(questions), (), {})
+        return LogVerdict(tuple(questions), (), {})
     if not (np.ptp(q, axis=0) > _MOVES).any():
-        return Verdict((f"the arm stands still: no joint moves by {_MOVES:g} rad. Use a log of a motion.",), (), {})
+        return LogVerdict((f"the arm stands still: no joint moves by {_MOVES:g} rad. Use a log of a motion.",), (), {})
     motion = _motion(recording, joints, q)
     judge = _Judge(model, recording)
     before = judge.lacks(motion)
@@ -110,7 +110,9 @@ def check_consistency(model: RobotModel, recording: Recording) -> Verdict:
     questions += [] if questions else list(_unexplained(before))
     questions += [] if questions else list(_too_fast(model, recording, q))
     questions += [] if questions else list(_scales(judge, motion, recording, joints))
-    return Verdict(tuple(questions), tuple(notes), {} if questions else dict(_confirmed(judge, motion, before, joints)))
+    return LogVerdict(
+        tuple(questions), tuple(notes), {} if questions else dict(_confirmed(judge, motion, before, joints))
+    )
 
 
 def _empty_torques(recording: Recording) -> Iterator[str]:

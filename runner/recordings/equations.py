@@ -32,7 +32,7 @@ FEWEST = 10
 
 
 @dataclass(frozen=True)
-class Motion:
+class EvenRows:
     """Even rows at which the equations of an arm are evaluated.
 
     Attributes:
@@ -114,7 +114,7 @@ def motion_of(
     frequency: float,
     speeds: FloatArray | None = None,
     accelerations: FloatArray | None = None,
-) -> Motion:
+) -> EvenRows:
     """Return the rows of a log at which the equations are evaluated.
 
     Args:
@@ -144,7 +144,7 @@ def motion_of(
     dq = derivative(q, period) if speeds is None else speed[::every]
     ddq = derivative(dq, period) if accelerations is None else low_pass(accelerations, period / every, first)[::every]
     noise = noise if accelerations is None else np.zeros(model.nq)
-    return Motion(model, period, frequency, q, dq, ddq, signs, torques, noise, unusable)
+    return EvenRows(model, period, frequency, q, dq, ddq, signs, torques, noise, unusable)
 
 
 def _unusable(torques: FloatArray, speed: FloatArray) -> str:

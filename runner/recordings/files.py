@@ -7,7 +7,7 @@ from pathlib import Path
 
 from runner.base.errors import RunnerError
 from runner.base.limits import LOG_FILES, RECORDING, ExcessError
-from runner.base.tables import Table, read_table, read_text_table
+from runner.base.tables import NumericTable, read_table, read_text_table
 from runner.recordings.bags import bag_files, read_bag
 from runner.recordings.lerobot import EPISODE, INFO, one_episode, read_lerobot
 
@@ -21,7 +21,7 @@ def is_log_folder(path: Path) -> bool:
 
 def read_log(
     path: Path, wanted: Sequence[str] | None = None, topic: str | None = None, episode: int | None = None
-) -> Table:
+) -> NumericTable:
     """Return the columns of a log.
 
     Args:
@@ -42,7 +42,7 @@ def read_log(
     return table
 
 
-def _read(path: Path, wanted: Sequence[str] | None, topic: str | None, episode: int | None) -> Table:
+def _read(path: Path, wanted: Sequence[str] | None, topic: str | None, episode: int | None) -> NumericTable:
     if path.is_dir():
         return _read_folder(path, topic, episode)
     if path.is_fifo() or path.is_char_device():
@@ -67,7 +67,7 @@ def _read(path: Path, wanted: Sequence[str] | None, topic: str | None, episode: 
     return table
 
 
-def _read_folder(path: Path, topic: str | None, episode: int | None) -> Table:
+def _read_folder(path: Path, topic: str | None, episode: int | None) -> NumericTable:
     if (path / INFO).is_file():
         return read_lerobot(path, episode)
     count = 0
@@ -80,7 +80,7 @@ def _read_folder(path: Path, topic: str | None, episode: int | None) -> Table:
     raise RunnerError(f"{path}: a folder of {many} files is not a log. Allowed: one file, {_FOLDERS}.")
 
 
-def _read_zip(path: Path, wanted: Sequence[str] | None) -> Table:
+def _read_zip(path: Path, wanted: Sequence[str] | None) -> NumericTable:
     """Return the largest CSV file in a zip file, which mecademicpy writes together with a description."""
     with zipfile.ZipFile(path) as archive:
         texts = [item for item in archive.infolist() if item.filename.lower().endswith(".csv")]

@@ -45,7 +45,7 @@ _BLOCK = 0.5  # s, within which what is left over may be correlated
 
 
 @dataclass(frozen=True)
-class JointFriction:
+class FrictionEstimate:
     """Friction of a joint, each with the half-width of its 95 % interval.
 
     Attributes:
@@ -81,7 +81,7 @@ class Friction:
         frequency: Cut-off of the low-pass, in Hz.
     """
 
-    joints: Sequence[JointFriction]
+    joints: Sequence[FrictionEstimate]
     lacking: Sequence[str]
     frequency: float
 
@@ -124,13 +124,13 @@ def identify_friction(
         else:
             blocks = (motion.times[moving] / _BLOCK).astype(np.intp)
             parts.append(_Part(joint, blocks, *(signal[moving] for signal in (residual, speed, sign, masses))))
-    found: list[JointFriction] = []
+    found: list[FrictionEstimate] = []
     for part, fitted in zip(parts, _fit(parts), strict=True):
         name = model.joint_names[part.joint]
         if fitted is None:
             lacking.append(f"{name}: its motion does not tell friction from other masses and inertias")
         else:
-            found.append(JointFriction(name, model.joint_units[part.joint], *fitted))
+            found.append(FrictionEstimate(name, model.joint_units[part.joint], *fitted))
     return Friction(found, lacking, frequency)
 
 

@@ -12,7 +12,7 @@ from runner.base.bounded_json import decode_json
 from runner.base.errors import RunnerError, TableError
 from runner.base.limits import LOG_FILES, RECORDING, ExcessError, read_text
 from runner.base.sanitize import quoted
-from runner.base.tables import Table, number_columns, open_columns
+from runner.base.tables import NumericTable, number_columns, open_columns
 
 INFO = Path("meta", "info.json")
 """File by which a LeRobot data set is recognised."""
@@ -20,7 +20,7 @@ INFO = Path("meta", "info.json")
 EPISODE = "episode_index"
 
 
-def one_episode(table: Table, episode: int | None) -> Table:
+def one_episode(table: NumericTable, episode: int | None) -> NumericTable:
     """Return the rows of an episode of a table with a column of episodes; None for the longest.
 
     Raises:
@@ -34,7 +34,7 @@ def one_episode(table: Table, episode: int | None) -> Table:
     return replace(table, form=f"{table.form}, {form}", columns=columns, lines=lines)
 
 
-def read_lerobot(path: Path, episode: int | None) -> Table:
+def read_lerobot(path: Path, episode: int | None) -> NumericTable:
     """Return an episode of a LeRobot data set, with the names that it gives to states and actions.
 
     Raises:
@@ -73,7 +73,9 @@ def _names(feature: Any) -> list[str]:
     return [str(name) for name in names] if isinstance(names, list) else []
 
 
-def _read_episode(path: Path, files: Sequence[Path], episode: int | None, names: Mapping[str, Sequence[str]]) -> Table:
+def _read_episode(
+    path: Path, files: Sequence[Path], episode: int | None, names: Mapping[str, Sequence[str]]
+) -> NumericTable:
     lengths: dict[int, int] = {}
     places: dict[int, Path] = {}
     for file in files:
@@ -85,7 +87,7 @@ def _read_episode(path: Path, files: Sequence[Path], episode: int | None, names:
     chosen, form = _chosen(path, lengths, episode)
     table = open_columns(places[chosen])
     columns, others = number_columns(table.filter(table[EPISODE].to_numpy() == chosen), names)
-    return Table(path, f"LeRobot data set, {form}", columns, others=others)
+    return NumericTable(path, f"LeRobot data set, {form}", columns, others=others)
 
 
 def _chosen(path: Path, lengths: Mapping[int, int], episode: int | None) -> tuple[int, str]:

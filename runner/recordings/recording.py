@@ -9,9 +9,9 @@ from numpy.typing import NDArray
 
 from runner.base.arrays import FloatArray
 from runner.base.errors import RunnerError
-from runner.base.tables import Table
+from runner.base.tables import NumericTable
 from runner.recordings.clock import Clock, longest_step, read_clock
-from runner.recordings.columns_map import Column, ColumnsMap, Factor, Holds, Side, Signal, stacked
+from runner.recordings.columns_map import ColumnsMap, Factor, Holds, MappedColumn, Side, Signal, stacked
 from runner.recordings.files import read_log
 from runner.recordings.smoothing import CUTOFF, evenly
 from runner.schema.model import LARGEST
@@ -101,7 +101,9 @@ def read_recording(path: Path, said: ColumnsMap, factors: Mapping[str, Factor], 
     return to_recording(read_log(path, wanted, said.topic, said.episode), said, factors, fill_gaps)
 
 
-def to_recording(table: Table, said: ColumnsMap, factors: Mapping[str, Factor], fill_gaps: float = 0.0) -> Recording:
+def to_recording(
+    table: NumericTable, said: ColumnsMap, factors: Mapping[str, Factor], fill_gaps: float = 0.0
+) -> Recording:
     """Return the signals in a table; see read_recording."""
     path, fill_gaps = table.path, fill_gaps * (1.0 + _DECIMALS)
     time = None if said.time is None else said.time.column
@@ -135,7 +137,7 @@ def _period(t: FloatArray) -> float:
     return float(np.median(np.diff(t)))
 
 
-def _clock(table: Table, said: ColumnsMap, factors: Mapping[str, Factor]) -> Clock:
+def _clock(table: NumericTable, said: ColumnsMap, factors: Mapping[str, Factor]) -> Clock:
     if said.time is None:
         assert said.rate is not None  # noqa: S101 - the map has one of both
         return Clock(np.arange(len(table)) / said.rate, np.arange(len(table)), [])
@@ -158,7 +160,7 @@ def _clock(table: Table, said: ColumnsMap, factors: Mapping[str, Factor]) -> Clo
     return clock
 
 
-def _without_stale(table: Table, said: ColumnsMap, clock: Clock) -> Clock:
+def _without_stale(table: NumericTable, said: ColumnsMap, clock: Clock) -> Clock:
     """Leave out rows that repeat the positions of the row before in the midst of motion, if there are many."""
     moving = [name for name, column in said.columns.items() if column.signal.kind in ("position", "tip")]
     if said.time is None or not moving:
@@ -172,7 +174,7 @@ def _without_stale(table: Table, said: ColumnsMap, clock: Clock) -> Clock:
     return Clock(clock.t[~stale], clock.rows[~stale], [*clock.notes, note])
 
 
-def _unwrapped(numbers: FloatArray, column: Column, factor: Factor) -> tuple[FloatArray, int]:
+def _unwrapped(numbers: FloatArray, column: MappedColumn, factor: Factor) -> tuple[FloatArray, int]:
     """Return a column without its jumps by a turn, and their number."""
     if column.signal.kind not in ("position", "reference") or (column.wrap is None and factor.unit != "rad"):
         return numbers, 0
@@ -185,7 +187,7 @@ def _unwrapped(numbers: FloatArray, column: Column, factor: Factor) -> tuple[Flo
     return going_on, int(np.sum(turns != 0.0))
 
 
-def _in_si(table: Table, name: str, numbers: FloatArray, factor: Factor, clock: Clock) -> FloatArray:
+def _in_si(table: NumericTable, name: str, numbers: FloatArray, factor: Factor, clock: Clock) -> FloatArray:
     """Return a column in SI units, none of whose numbers is beyond reason."""
     with np.errstate(over="ignore"):
         values: FloatArray = numbers * factor.factor
@@ -198,7 +200,7 @@ def _in_si(table: Table, name: str, numbers: FloatArray, factor: Factor, clock: 
 
 
 def _filled(
-    table: Table, name: str, clock: Clock, values: FloatArray, signal: Signal, fill_gaps: float
+    table: NumericTable, name: str, clock: Clock, values: FloatArray, signal: Signal, fill_gaps: float
 ) -> tuple[FloatArray, list[float]]:
     """Return a signal without gaps, and the gaps that it had, in s."""
     t, missing = clock.t, np.isnan(values)
@@ -215,7 +217,7 @@ def _filled(
 
 
 def _gaps(
-    table: Table, what: str, clock: Clock, kept: NDArray[np.intp], wide: NDArray[np.bool_], fill_gaps: float
+    table: NumericTable, what: str, clock: Clock, kept: NDArray[np.intp], wide: NDArray[np.bool_], fill_gaps: float
 ) -> list[float]:
     """Return the lengths of the wide steps between the kept rows, in s, if none exceeds the filled length."""
     steps = np.diff(clock.t[kept])

@@ -27,7 +27,7 @@ AXES = ("x", "y", "z")
 
 
 @dataclass(frozen=True)
-class Setting:
+class ComparedRun:
     """A run that recordings are compared with.
 
     Attributes:
@@ -69,7 +69,7 @@ class Setting:
         return (self.trace.q if wanted.kind == "position" else self.trace.tau)[:, place]
 
 
-def setting_of(run: Run) -> Setting:
+def setting_of(run: Run) -> ComparedRun:
     """Return the run that a recording is compared with.
 
     Raises:
@@ -83,7 +83,7 @@ def setting_of(run: Run) -> Setting:
         raise RunnerError(f"run {run.hash} cannot be made again: {'; '.join(error.problems)}") from None
     if config.arm.urdf != run.urdf:
         raise RunnerError(f"the file of the robot of {run.hash} has changed since the run; make the run again")
-    return Setting(config, _stored_trace(run, config), metric_context(config))
+    return ComparedRun(config, _stored_trace(run, config), metric_context(config))
 
 
 def _stored_trace(run: Run, config: RunConfig) -> Trace:
@@ -110,7 +110,7 @@ _OF_TICKS = ("torque_chatter", "force_chatter")
 
 
 def both_metrics(
-    setting: Setting,
+    setting: ComparedRun,
     ticks: slice,
     recorded: Mapping[Signal, FloatArray],
     speeds: FloatArray | None,

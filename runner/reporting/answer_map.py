@@ -5,7 +5,7 @@ from dataclasses import dataclass
 
 from runner.reporting.answers import Answer
 from runner.reporting.comparison.pairs import label_text
-from runner.reporting.conditions import Condition, conditions_of
+from runner.reporting.conditions import ConditionAnswers, conditions_of
 from runner.reporting.markup import literal
 from runner.reporting.metric_titles import title
 
@@ -76,14 +76,14 @@ def make_map(answers: Sequence[Answer]) -> AnswerMap | None:
     return AnswerMap(literal(caption + _marked(rows)), down, heads, rows)
 
 
-def _column_key(found: Sequence[Condition]) -> str:
+def _column_key(found: Sequence[ConditionAnswers]) -> str:
     """Return the condition with the fewest values, the last of several, as columns; "" for a single condition."""
     counts = {key: len({each.at[key] for each in found}) for key in found[0].at}
     fits = [key for key, count in counts.items() if count <= _MOST_COLUMNS]
     return min(reversed(fits), key=lambda key: counts[key]) if len(counts) > 1 and fits else ""
 
 
-def _cell(condition: Condition, names: Sequence[str]) -> MapCell:
+def _cell(condition: ConditionAnswers, names: Sequence[str]) -> MapCell:
     color = names.index(condition.winner) if condition.winner else None
     return MapCell(f"{condition.word}{' *' if condition.is_saturated else ''}", color)
 

@@ -20,7 +20,7 @@ from runner.reporting.comparison.pairs import Pairs, compare, label_text
 from runner.reporting.limits import find_limit
 from runner.reporting.metric_titles import capital, title
 from runner.reporting.table import Cell, Number
-from runner.statistics import SMALLEST_SAMPLE, Comparison, fewest_pairs, holm, holm_levels
+from runner.statistics import SMALLEST_SAMPLE, PairedComparison, fewest_pairs, holm, holm_levels
 from runner.statistics.conclusion import ALPHA, SHARE, conclusion_sign, larger_median, least_difference
 
 PAIRS = (
@@ -53,7 +53,7 @@ _PLAIN = (1e-4, 1e5)  # sizes that are printed without a power of ten
 _MOST_DIGITS = 5  # of a printed value
 
 
-class Printed(NamedTuple):
+class PrintedNumbers(NamedTuple):
     """The numbers of a comparison as strings with one unit.
 
     Attributes:
@@ -70,7 +70,7 @@ class Printed(NamedTuple):
 
 
 @dataclass(frozen=True, eq=False)
-class Asked:
+class AskedComparison:
     """A comparison in one metric.
 
     Attributes:
@@ -83,7 +83,7 @@ class Asked:
 
     metric: str
     unit: str
-    comparison: Comparison
+    comparison: PairedComparison
     pairs: Pairs | None = None
     limit: str = ""
 
@@ -133,7 +133,7 @@ class Asked:
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)
-class Answer(Asked):
+class Answer(AskedComparison):
     """A comparison, judged with the others of its metric.
 
     Attributes:
@@ -292,7 +292,7 @@ class Answer(Asked):
         return f"{share} with {one} than with {other} ({large}): by {self._evidence()}{price}."
 
     @cached_property
-    def printed(self) -> Printed:
+    def printed(self) -> PrintedNumbers:
         """The numbers as strings: the printed difference and larger median give the printed per cent."""
         found = self.comparison
         size, whole = abs(found.difference), max(abs(one) for one in found.medians)
@@ -301,7 +301,7 @@ class Answer(Asked):
             share = f"{number(100.0 * self._rounded(size) / self._rounded(whole), 2)} %"
         first, second = (self._quantity(one) if np.isfinite(one) else "never" for one in found.medians)
         amount = self._quantity(size) if np.isfinite(size) else "more than any number"
-        return Printed((first, second), amount, self._range(self.interval), share)
+        return PrintedNumbers((first, second), amount, self._range(self.interval), share)
 
     @cached_property
     def _decimals(self) -> int:
@@ -403,17 +403,17 @@ class Answer(Asked):
         return f"{minus}{self.printed.amount} in pairs ({', '.join(filter(None, parts))})"
 
 
-def ask(pairs: Sequence[Pairs], metrics: Sequence[str]) -> list[Asked]:
+def ask(pairs: Sequence[Pairs], metrics: Sequence[str]) -> list[AskedComparison]:
     """Return the comparisons of some pairs of cells in some metrics, without those that have no value."""
     return [
-        Asked(metric, some.a.units[metric], found, some, find_limit([(some.a, some.of_a), (some.b, some.of_b)], metric))
+        AskedComparison(metric, some.a.units[metric], found, some, find_limit(some.sides, metric))
         for metric in metrics
         for some in pairs
         if (found := compare(some, metric)) is not None
     ]
 
 
-def judge(asked: Sequence[Asked], first: Sequence[str]) -> list[Answer]:
+def judge(asked: Sequence[AskedComparison], first: Sequence[str]) -> list[Answer]:
     """Return the answers to a question, in the order of its comparisons; those of a metric are one family.
 
     Args:

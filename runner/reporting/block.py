@@ -6,7 +6,7 @@ from typing import ClassVar
 from runner.reporting.verdicts import Tally
 
 
-class Block:
+class ReportBlock:
     """A piece of a section, as a frozen dataclass of values; the templates have a macro for each type.
 
     A guest of the report, such as runner/papers, adds a type of block by a subclass and a pair of templates.

@@ -16,7 +16,7 @@ ALIKE = 3.0
 
 
 @dataclass(frozen=True, eq=False)
-class Condition:
+class ConditionAnswers:
     """All comparisons of a metric under one condition.
 
     Attributes:
@@ -73,7 +73,7 @@ class Condition:
     def is_saturated(self) -> bool:
         """True if a joint of a compared cell is at its torque limit more often than the caveat allows."""
         pairs = [one.pairs for one in self.answers if one.pairs]
-        return any(is_saturated([(some.a, some.of_a), (some.b, some.of_b)]) for some in pairs)
+        return any(is_saturated(some.sides) for some in pairs)
 
     @property
     def size(self) -> float:
@@ -81,13 +81,13 @@ class Condition:
         return max(_relative(one) for one in self.answers)
 
 
-def conditions_of(answers: Sequence[Answer], metric: str) -> list[Condition]:
+def conditions_of(answers: Sequence[Answer], metric: str) -> list[ConditionAnswers]:
     """Return the conditions under which a metric is compared, in the order of the answers."""
     found: dict[str, list[Answer]] = {}
     for one in answers:
         if one.metric == metric and one.at:
             found.setdefault(label_text(one.at), []).append(one)
-    return [Condition(some[0].at, some) for some in found.values()]
+    return [ConditionAnswers(some[0].at, some) for some in found.values()]
 
 
 def keep_described(answers: Sequence[Answer], whole: bool = True) -> list[Answer]:

@@ -5,7 +5,7 @@ from dataclasses import replace
 
 from runner.reporting.charts import palette
 from runner.reporting.charts.scales import curves_in_readable_units, maps_in_readable_units
-from runner.reporting.document import Block, Curves, Document, Maps, Panel, Section, Series
+from runner.reporting.document import Curves, Document, Maps, Panel, ReportBlock, Section, Series
 from runner.reporting.outline import blocks
 
 
@@ -18,7 +18,7 @@ def make_consistent(document: Document) -> Document:
     panels = [panel for block in blocks(document) if isinstance(block, Curves) for panel in block.panels]
     found = _by_name(panels)
 
-    def changed(block: Block) -> Block:
+    def changed(block: ReportBlock) -> ReportBlock:
         if isinstance(block, Maps):
             return maps_in_readable_units(block)
         if not isinstance(block, Curves):
@@ -53,7 +53,7 @@ def _series(panel: Panel, found: Mapping[str, int]) -> Iterator[Series]:
             yield series
 
 
-def _changed(sections: Sequence[Section], change: Callable[[Block], Block]) -> list[Section]:
+def _changed(sections: Sequence[Section], change: Callable[[ReportBlock], ReportBlock]) -> list[Section]:
     return [
         replace(each, blocks=list(map(change, each.blocks)), sections=_changed(each.sections, change))
         for each in sections

@@ -15,7 +15,7 @@ from numpy.typing import NDArray
 
 from runner.base.arrays import FloatArray as FloatArray
 from runner.reporting.answer_map import AnswerMap
-from runner.reporting.block import Block as Block
+from runner.reporting.block import ReportBlock as ReportBlock
 from runner.reporting.charts.figure import Curves as Curves
 from runner.reporting.charts.figure import Map as Map
 from runner.reporting.charts.figure import Maps as Maps
@@ -26,7 +26,7 @@ from runner.reporting.table import Table as Table
 
 
 @dataclass(frozen=True)
-class Text(Block):
+class Text(ReportBlock):
     """A paragraph; inline mathematics is between dollar signs."""
 
     block: ClassVar[str] = "text"
@@ -38,7 +38,7 @@ class Text(Block):
 
 
 @dataclass(frozen=True)
-class Items(Block):
+class Items(ReportBlock):
     """A list of short strings; inline mathematics as in Text."""
 
     block: ClassVar[str] = "items"
@@ -50,7 +50,7 @@ class Items(Block):
 
 
 @dataclass(frozen=True)
-class Code(Block):
+class Code(ReportBlock):
     """A string that is shown as typed, and can be copied.
 
     Attributes:
@@ -67,7 +67,7 @@ NoticeKind = Literal["finding", "warning", "failure", "stands", "falls", "turns"
 
 
 @dataclass(frozen=True)
-class Notice(Block):
+class Notice(ReportBlock):
     """A paragraph set apart: a failed run, a limit of the comparison, a finding that contradicts the source.
 
     Attributes:
@@ -89,7 +89,7 @@ class Notice(Block):
 
 
 @dataclass(frozen=True)
-class Formula(Block):
+class Formula(ReportBlock):
     """A displayed equation.
 
     Attributes:
@@ -107,7 +107,7 @@ class Formula(Block):
 
 
 @dataclass(frozen=True)
-class RunList(Block):
+class RunList(ReportBlock):
     """The runs of a sweep: filtered, sorted and plotted against each other in HTML, a short table in the PDF.
 
     Attributes:
@@ -141,7 +141,7 @@ class RunList(Block):
 
 
 @dataclass(frozen=True)
-class Picture(Block):
+class Picture(ReportBlock):
     """A still image, drawn from the model or from a stored run.
 
     Attributes:
@@ -167,7 +167,7 @@ class Picture(Block):
 
 
 @dataclass(frozen=True)
-class Body:
+class PlaybackBody:
     """One rigid body of a playback: a polyline of the arm, drawn as cylinders and balls in its own frame.
 
     Attributes:
@@ -188,7 +188,7 @@ class Body:
 
 
 @dataclass(frozen=True)
-class Playback(Block):
+class Playback(ReportBlock):
     """The motion of an arm, and of further ones: played, paused and turned in HTML, a still picture in the PDF.
 
     Attributes:
@@ -214,7 +214,7 @@ class Playback(Block):
     actions: ClassVar[tuple[str, ...]] = ("enlarge", "svg", "csv")
     caption: str
     times: FloatArray
-    bodies: Sequence[Body]
+    bodies: Sequence[PlaybackBody]
     path: FloatArray
     desired: FloatArray | None
     still: str
@@ -234,7 +234,7 @@ class Playback(Block):
 
 
 @dataclass(frozen=True)
-class Provenance(Block):
+class Provenance(ReportBlock):
     """Provenance of the results: names and values, such as plant, step, versions, machine, commit."""
 
     block: ClassVar[str] = "provenance"
@@ -246,7 +246,7 @@ class Section:
     """A titled sequence of blocks, with sections below it."""
 
     title: str
-    blocks: Sequence[Block] = ()
+    blocks: Sequence[ReportBlock] = ()
     sections: Sequence["Section"] = ()
 
     @property

@@ -3,9 +3,20 @@
 import numpy as np
 
 from runner.base.quantities import label_with_unit, quantity
-from runner.identification.result import Identification, JointAccuracy, Parameter
+from runner.identification.result import Identification, IdentifiedParameter, JointAccuracy
 from runner.identification.words import answer_lines, doubts, method_lines, per_cent
-from runner.reporting.document import Block, Curves, Document, Notice, Panel, Provenance, Section, Series, Table, Text
+from runner.reporting.document import (
+    Curves,
+    Document,
+    Notice,
+    Panel,
+    Provenance,
+    ReportBlock,
+    Section,
+    Series,
+    Table,
+    Text,
+)
 from runner.reporting.markup import literal
 from runner.reporting.metric_titles import capital
 from runner.reporting.table import Cell, Column, Number, Origin, numbers
@@ -79,7 +90,7 @@ def parameters(found: Identification) -> Table:
     """Return the determined parameters with their intervals."""
     with_prior = found.prior is not None
 
-    def share(one: Parameter) -> list[Cell]:
+    def share(one: IdentifiedParameter) -> list[Cell]:
         text: Cell = "" if one.prior_share is None else Number(100.0 * one.prior_share, digits=2)
         return [text] if with_prior else []
 
@@ -98,22 +109,22 @@ def parameters(found: Identification) -> Table:
     return Table(caption, header, rows)
 
 
-def _full_name(one: Parameter) -> str:
+def _full_name(one: IdentifiedParameter) -> str:
     return f"{one.name} (with {', '.join(one.stands_for)})" if one.stands_for else one.name
 
 
-def _unit(one: Parameter) -> str:
+def _unit(one: IdentifiedParameter) -> str:
     return one.unit.replace("^2", "²")
 
 
-def _untold(found: Identification) -> list[Block]:
+def _untold(found: Identification) -> list[ReportBlock]:
     if not found.untold:
         return [Text("Every parameter of the torques is determined by these logs.")]
     rows = [[one.name, one.reason, capital(one.motion)] for one in found.untold]
     return [Table("Parameters that the logs do not determine.", ["parameter", "reason", "motion that would"], rows)]
 
 
-def _doubts(found: Identification) -> list[Block]:
+def _doubts(found: Identification) -> list[ReportBlock]:
     return [Notice("warning", literal(line), "") for line in doubts(found)] or [Text("Nothing was found.")]
 
 
@@ -159,7 +170,7 @@ def _alternatives(found: Identification) -> Table:
     return Table(caption, header, rows)
 
 
-def _second(found: Identification) -> list[Block]:
+def _second(found: Identification) -> list[ReportBlock]:
     rows: list[list[Cell]] = [
         [one.name, _unit(one), Number(one.value), Number(one.second), Number(one.half), Number(one.white),
          "more than chance" if one.differs else ""]
@@ -176,7 +187,7 @@ def _second(found: Identification) -> list[Block]:
     return [Text(text), Table("Comparison with ordinary least squares.", header, rows)]
 
 
-def _made(found: Identification) -> list[Block]:
+def _made(found: Identification) -> list[ReportBlock]:
     rows = [(log.name, f"SHA-256 {log.digest}") for log in found.logs]
     rows += [("torques", f"{found.side} side"), ("date", found.date), ("command", found.command)]
     shapes = [

@@ -11,13 +11,13 @@ import typst
 
 from runner.reporting import outline
 from runner.reporting.document import Document
-from runner.reporting.templating import Code, typst_environment
+from runner.reporting.templating import CodeText, typst_environment
 
 # A hash sign starts Typst code, which could read files: formulas have no use for it.
 _CODE = "#"
 _FORMULA = re.compile(r"<p>(.*?)</p>", re.DOTALL)
 _KEPT = 5000  # formulas of one process, more than all reports have
-_made: dict[tuple[str, bool], Code | None] = {}
+_made: dict[tuple[str, bool], CodeText | None] = {}
 # Browsers put a combining accent to the left of its letter.
 _ACCENTS = {"\u0302": "\u02c6", "\u0307": "\u02d9", "\u0308": "\u00a8", "\u0303": "\u02dc", "\u20d7": "\u2192"}
 _TALL = frozenset(("mfrac", "mtable", "msqrt", "munder", "munderover"))  # what brackets grow with
@@ -25,7 +25,7 @@ _WHOLE = 12  # most symbols of a formula in a line of text that does not break
 _BEFORE, _BEHIND = frozenset("=≈≠≤≥<>→+−±"), frozenset(",;")  # where a longer one breaks
 
 
-def mathml(texts: Iterable[str], *, displayed: bool) -> dict[str, Code | None]:
+def mathml(texts: Iterable[str], *, displayed: bool) -> dict[str, CodeText | None]:
     """Return each formula as MathML, or None if it is not valid Typst mathematics.
 
     Args:
@@ -40,7 +40,7 @@ def mathml(texts: Iterable[str], *, displayed: bool) -> dict[str, Code | None]:
     return {text: _made[text, displayed] for text in wanted}
 
 
-def all_mathml(document: Document) -> dict[bool, dict[str, Code | None]]:
+def all_mathml(document: Document) -> dict[bool, dict[str, CodeText | None]]:
     """Return all formulas of a document as MathML, by whether they are displayed."""
     displayed, inline = outline.formulas(document)
     return {True: mathml(displayed, displayed=True), False: mathml(inline, displayed=False)}
@@ -51,9 +51,9 @@ def faulty(document: Document) -> list[str]:
     return [text for found in all_mathml(document).values() for text, made in found.items() if made is None]
 
 
-def _compile(texts: list[str], displayed: bool) -> dict[str, Code | None]:
+def _compile(texts: list[str], displayed: bool) -> dict[str, CodeText | None]:
     allowed = [text for text in texts if _CODE not in text]
-    result: dict[str, Code | None] = dict.fromkeys(texts)
+    result: dict[str, CodeText | None] = dict.fromkeys(texts)
     if not allowed:
         return result
     try:
@@ -66,14 +66,14 @@ def _compile(texts: list[str], displayed: bool) -> dict[str, Code | None]:
     return result | _compile(allowed[:middle], displayed) | _compile(allowed[middle:], displayed)
 
 
-def _exported(texts: list[str], displayed: bool) -> list[Code]:
+def _exported(texts: list[str], displayed: bool) -> list[CodeText]:
     source = typst_environment().get_template("mathml.typ.j2").render(texts=texts, displayed=displayed)
     # The folder holds nothing else: whatever a formula tries to read does not exist.
     with tempfile.TemporaryDirectory() as folder:
         path = Path(folder, "mathml.typ")
         path.write_text(source, encoding="utf-8")
         page = typst.compile(path, root=path.parent, format="html", ignore_system_fonts=True).decode()
-    return [Code("".join(_tidied(ET.fromstring(each)))) for each in _FORMULA.findall(page)]  # noqa: S314 - by Typst
+    return [CodeText("".join(_tidied(ET.fromstring(each)))) for each in _FORMULA.findall(page)]  # noqa: S314 - by Typst
 
 
 def _tidied(formula: ET.Element) -> Iterator[str]:

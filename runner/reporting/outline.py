@@ -4,7 +4,7 @@ import re
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 
-from runner.reporting.document import Block, Curves, Document, Maps, Origin, Playback, Section, Table
+from runner.reporting.document import Curves, Document, Maps, Origin, Playback, ReportBlock, Section, Table
 from runner.reporting.markup import anchor, spans
 from runner.reporting.verdicts import Tally
 
@@ -45,7 +45,7 @@ def number_sections(sections: Sequence[Section], prefix: str = "") -> Iterator[C
         yield from number_sections(section.sections, number + ".")
 
 
-def blocks(document: Document) -> Iterator[Block]:
+def blocks(document: Document) -> Iterator[ReportBlock]:
     """Yield all blocks of a document in reading order."""
     for chapter in chapters(document):
         yield from chapter.section.blocks
@@ -103,7 +103,7 @@ class Places:
                     tables.setdefault(_experiment(origin.command), self._of[id(block)])
         self._evidence = tables | self._evidence  # a table is evidence where no figure is
 
-    def _place(self, chapter: Chapter, block: Block, origin: Origin, count: int) -> None:
+    def _place(self, chapter: Chapter, block: ReportBlock, origin: Origin, count: int) -> None:
         self.names |= {*block.places()}
         name = numbered_place(origin.number, block.word)
         if not name or name in self.names:
@@ -113,7 +113,7 @@ class Places:
         if isinstance(block, Curves | Maps | Playback):
             self._evidence.setdefault(_experiment(origin.command), name)
 
-    def of(self, block: Block) -> str:
+    def of(self, block: ReportBlock) -> str:
         """Return the name of a block's place; nothing for other blocks."""
         return self._of.get(id(block), "")
 

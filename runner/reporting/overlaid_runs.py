@@ -7,7 +7,7 @@ from itertools import compress
 import numpy as np
 
 from runner.base.arrays import FloatArray
-from runner.reporting.document import Block, Curves, Panel, Series
+from runner.reporting.document import Curves, Panel, ReportBlock, Series
 from runner.reporting.figures import LEAVES_AXES, origin, playback
 from runner.store import Run
 
@@ -35,7 +35,7 @@ class Level:
     look: int
 
 
-def overlaid(levels: Sequence[Level], told: str = "", played: str = "") -> list[Block]:
+def overlaid(levels: Sequence[Level], told: str = "", played: str = "") -> list[ReportBlock]:
     """Return the tip error and the torque of each joint, with the motion of the first run of each level; repetition 0.
 
     Noisy curves have a panel for each level, others are in the same axes. Axes have room for runs that finished; those

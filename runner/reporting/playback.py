@@ -11,7 +11,7 @@ from runner.base.arrays import FloatArray
 from runner.base.sanitize import plain
 from runner.reporting.charts.figure import spaced_indices
 from runner.reporting.charts.interactive import pack
-from runner.reporting.document import Body, Playback
+from runner.reporting.document import Playback, PlaybackBody
 from runner.robots.model import RobotModel
 
 Json = dict[str, Any]
@@ -74,7 +74,7 @@ def _motion(run: Playback) -> Json:
     }
 
 
-def body_shapes(body: Body) -> Iterator[tuple[FloatArray, float]]:
+def body_shapes(body: PlaybackBody) -> Iterator[tuple[FloatArray, float]]:
     """Yield ends of segments and centres of balls in the base frame, shape (T, 2, 3) and (T, 1, 3), and the radius."""
     segments = [((start, end), radius) for start, end, radius in body.segments]
     for ends, radius in [*segments, *(((center,), radius) for center, radius in body.balls)]:
@@ -124,7 +124,7 @@ Ball = tuple[Point, float]
 _BONE = 0.015  # radius of a bone, as a fraction of the arm's reach
 
 
-def playback_bodies(urdf_text: str, model: RobotModel, q: FloatArray) -> list[Body]:
+def playback_bodies(urdf_text: str, model: RobotModel, q: FloatArray) -> list[PlaybackBody]:
     """Return a body per link that can be seen, with its pose at each instant.
 
     A cylinder becomes a segment, a sphere a ball, a box the cylinder around it along its longest side. A link
@@ -147,7 +147,7 @@ def playback_bodies(urdf_text: str, model: RobotModel, q: FloatArray) -> list[Bo
     poses = np.array([model.frame_poses(row, names) for row in q]).reshape(len(q), len(names), 4, 4)
     pin_model = model.pin_model
     return [
-        Body(
+        PlaybackBody(
             name=name,
             segments=shapes[name][0],
             balls=shapes[name][1],

@@ -12,7 +12,18 @@ from runner.recordings.compare import RecordingComparison, Residual
 from runner.recordings.motions import Accuracy, accuracies
 from runner.recordings.verdict import verdict_lines
 from runner.reporting.charts.figure import spaced_indices
-from runner.reporting.document import Block, Curves, Document, Notice, Panel, Provenance, Section, Series, Table, Text
+from runner.reporting.document import (
+    Curves,
+    Document,
+    Notice,
+    Panel,
+    Provenance,
+    ReportBlock,
+    Section,
+    Series,
+    Table,
+    Text,
+)
 from runner.reporting.figures import origin
 from runner.reporting.markup import literal
 from runner.reporting.metric_titles import capital, title
@@ -142,8 +153,8 @@ def friction(found: RecordingComparison) -> Table:
     return Table("Friction of the recorded arm and of the run.", header, rows)
 
 
-def _friction(found: RecordingComparison) -> list[Block]:
-    blocks: list[Block] = [Text(literal(text)) for text in words.friction_lines(found)]
+def _friction(found: RecordingComparison) -> list[ReportBlock]:
+    blocks: list[ReportBlock] = [Text(literal(text)) for text in words.friction_lines(found)]
     if found.friction is None or not found.friction.joints:
         return [Notice("warning", "No friction was identified", literal(" ".join(words.friction_lines(found))))]
     method = (
@@ -155,7 +166,7 @@ def _friction(found: RecordingComparison) -> list[Block]:
     return [*blocks, friction(found), _friction_curves(found), Text(method)]
 
 
-def _metrics(found: RecordingComparison) -> list[Block]:
+def _metrics(found: RecordingComparison) -> list[ReportBlock]:
     if not found.metrics:
         return [Text("The recording has too few signals for any metric: neither all joints nor the tip.")]
     rows = [
@@ -174,7 +185,7 @@ def _metrics(found: RecordingComparison) -> list[Block]:
     return [Text(text), Table("Metrics of both.", header, rows)]
 
 
-def _made(found: RecordingComparison) -> list[Block]:
+def _made(found: RecordingComparison) -> list[ReportBlock]:
     recording = found.recording
     rows = [
         ("recording", recording.path.name),

@@ -32,7 +32,7 @@ from runner.reporting.metric_titles import metric_label
 from runner.reporting.outline import Places
 from runner.reporting.playback import playback_spec
 from runner.reporting.table import Table, numbers
-from runner.reporting.templating import Code, html_environment, typst_environment
+from runner.reporting.templating import CodeText, html_environment, typst_environment
 
 SHOWN = 6
 """Metrics in the table; the details of a run have all of them."""
@@ -145,18 +145,18 @@ def _math_font() -> str:
     return base64.b64encode((templates_dir() / "maths.woff2").read_bytes()).decode("ascii")
 
 
-def script_policy(scripts: Sequence[str]) -> Code:
+def script_policy(scripts: Sequence[str]) -> CodeText:
     """Return the sources of some scripts in a policy."""
-    return Code(" ".join(f"'sha256-{_sha256(script)}'" for script in scripts))
+    return CodeText(" ".join(f"'sha256-{_sha256(script)}'" for script in scripts))
 
 
 def _sha256(text: str) -> str:
     return base64.b64encode(hashlib.sha256(text.encode()).digest()).decode("ascii")
 
 
-def asset(name: str) -> Code:
+def asset(name: str) -> CodeText:
     """Return a style or a script of the templates."""
-    return Code((templates_dir() / name).read_text(encoding="utf-8"))
+    return CodeText((templates_dir() / name).read_text(encoding="utf-8"))
 
 
 def render_pdf(document: Document) -> bytes:

@@ -22,7 +22,7 @@ from runner.reporting.sweep.tuning import summary_of_tuning
 from runner.reporting.templating import html_environment
 from runner.store import Calibration, Run, Sweep, open_stored
 from runner.store.kinds import KINDS
-from runner.store.listing import Entry, list_entries, runs_of_sweeps
+from runner.store.listing import ListedResult, list_entries, runs_of_sweeps
 from runner.store.run import open_run
 from runner.store.seal import SchemaError
 from runner.sweeps.challenge.stored import open_challenge
@@ -52,7 +52,7 @@ class Row:
         state: "good", "unfinished", "other version" or "damaged".
     """
 
-    entry: Entry
+    entry: ListedResult
     what: str
     answer: str = ""
     runs: str = ""
@@ -109,7 +109,7 @@ def rows_of(outputs: Path) -> list[Row]:
     return rows
 
 
-def _owned(entries: Sequence[Entry]) -> set[str]:
+def _owned(entries: Sequence[ListedResult]) -> set[str]:
     """Return the runs of all sweeps that can be read."""
     owned: set[str] = set()
     for entry in entries:
@@ -120,7 +120,7 @@ def _owned(entries: Sequence[Entry]) -> set[str]:
     return owned
 
 
-def _row(entry: Entry, sizes: Mapping[str, int]) -> Row:
+def _row(entry: ListedResult, sizes: Mapping[str, int]) -> Row:
     if not entry.finished:
         return Row(entry, "", state="unfinished")
     try:
@@ -142,7 +142,7 @@ def _row(entry: Entry, sizes: Mapping[str, int]) -> Row:
         return Row(entry, "", one_line(text), state="damaged")
 
 
-def _identification_row(entry: Entry) -> Row:
+def _identification_row(entry: ListedResult) -> Row:
     from runner.identification.result import open_identification
     from runner.identification.words import answer_lines
 
@@ -150,14 +150,14 @@ def _identification_row(entry: Entry) -> Row:
     return Row(entry, known.command, next(answer_lines(known)), str(len(known.logs)))
 
 
-def _run_row(entry: Entry, run: Run) -> Row:
+def _run_row(entry: ListedResult, run: Run) -> Row:
     found = key_metrics(run, 1)
     answer = with_powers(run.failure or "") or "; ".join(f"{name} {value}" for name, value, _ in found)
     failed = int(run.status == "failed")
     return Row(entry, " ".join(run.overrides), answer, f"1 x {run.repetitions}", len(run.caveats), failed)
 
 
-def _sweep_row(entry: Entry, sweep: Sweep) -> Row:
+def _sweep_row(entry: ListedResult, sweep: Sweep) -> Row:
     status = find_status(sweep)
     words = sweep.command.partition(" -m ")[2] or sweep.command
     state = "unfinished" if status.left else "good"
@@ -211,7 +211,7 @@ def write_page(rows: Sequence[Row], outputs: Path, path: Path) -> None:
     write_atomically(path, page.encode("utf-8", "replace"))
 
 
-def _link(entry: Entry, outputs: Path, place: Path) -> str:
+def _link(entry: ListedResult, outputs: Path, place: Path) -> str:
     """Return the address of the report on a result, of its folder without one, from the folder of the page."""
     report = outputs / KINDS["report"].folder / report_name([entry.folder]) / "report.html"
     return os.path.relpath(report if report.is_file() else entry.folder, place)

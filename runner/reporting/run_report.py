@@ -13,7 +13,7 @@ from runner.base.errors import RunnerError
 from runner.base.machine import read_machine
 from runner.base.quantities import above_rounding, number, quantity, with_powers
 from runner.caveats.rounding_growth import SENSITIVE, STEP
-from runner.reporting.document import Block, Code, Cover, Document, Notice, Provenance, Section, Table, Text
+from runner.reporting.document import Code, Cover, Document, Notice, Provenance, ReportBlock, Section, Table, Text
 from runner.reporting.figures import before_failure, cover, desired_motion, playback, torque_and_error
 from runner.reporting.markup import literal
 from runner.reporting.metric_titles import capital, key_metrics, title
@@ -143,10 +143,10 @@ def _subtitle(run: Run, changed: Changes | None) -> str:
     return ", ".join([limits, *texts])
 
 
-def run_blocks(run: Run) -> list[Block]:
+def run_blocks(run: Run) -> list[ReportBlock]:
     """Return failure, caveats, curves, motion and metrics of a run."""
     config = run.config
-    blocks: list[Block] = []
+    blocks: list[ReportBlock] = []
     if (failure := run.failure_record) is not None:
         joint = f", joint {failure['joint']}" if failure["joint"] else ""
         blocks.append(
@@ -181,9 +181,9 @@ def _describe_rounding(run: Run) -> str:
     return f"{start} {f'other values of {count} of {len(changes)} metrics' if count else 'the same metrics'}."
 
 
-def caveat_notices(run: Run) -> list[Block]:
+def caveat_notices(run: Run) -> list[ReportBlock]:
     """Return a notice for each reason why a run's result may not be what it seems, and of how these were looked for."""
-    notices: list[Block] = [
+    notices: list[ReportBlock] = [
         Notice("warning", f"Caveat: {caveat['rule']}", literal(f"{capital(str(caveat['text']))}."))
         for caveat in run.caveats
     ]
@@ -216,12 +216,12 @@ def _metrics(run: Run) -> Table:
     )
 
 
-def config_blocks(run: Run, changed: Changes | None) -> list[Block]:
+def config_blocks(run: Run, changed: Changes | None) -> list[ReportBlock]:
     """Return the keys that were changed, and then all of them; only all keys for a config that no group here makes."""
     resolved = {key: value for key, value in run.config.items() if key != "outputs"}
     rows = [[dotted(place), _yaml(value)] for place, value in leaves(resolved, lists=False)]
     file = Code(yaml.safe_dump(resolved, sort_keys=False, allow_unicode=True), "config.yaml")
-    everything: list[Block] = [
+    everything: list[ReportBlock] = [
         Table("All keys and their values.", [*_KEY_AND_VALUE], rows, folded=changed is not None),
         file,
     ]

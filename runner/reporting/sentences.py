@@ -5,7 +5,7 @@ from collections.abc import Sequence
 
 from runner.reporting.answers import Answer
 from runner.reporting.comparison.pairs import label_text
-from runner.reporting.conditions import Condition, conditions_of
+from runner.reporting.conditions import ConditionAnswers, conditions_of
 from runner.reporting.metric_titles import capital, title
 from runner.reporting.table import Column, numbers
 from runner.statistics import fewest_pairs
@@ -65,17 +65,17 @@ def _some(texts: list[str], most: int) -> list[str]:
     return texts[:most] + ([f"{left} more are in the tables."] if left > 0 else [])
 
 
-def _at(condition: Condition, answers: Sequence[Answer]) -> list[str]:
+def _at(condition: ConditionAnswers, answers: Sequence[Answer]) -> list[str]:
     return [f"At {label_text(condition.at)}: {one.clause(price(one, answers))}"
             for one in condition.answers if one.is_answerable and not one.is_lost]  # fmt: skip
 
 
-def _agreement(found: Sequence[Condition]) -> str:
+def _agreement(found: Sequence[ConditionAnswers]) -> str:
     """Return in how many conditions a pooled answer also holds in a single condition."""
     return f"By condition: {_tally(found)}."
 
 
-def _headline(found: Sequence[Condition]) -> str:
+def _headline(found: Sequence[ConditionAnswers]) -> str:
     """Return the metric, and in how many conditions which name is smaller."""
     metric = capital(title(found[0].answers[0].metric))
     winners = {each.winner for each in found} - {""}
@@ -83,7 +83,7 @@ def _headline(found: Sequence[Condition]) -> str:
     return f"{metric}: {depends}{_tally(found)}."
 
 
-def _tally(found: Sequence[Condition]) -> str:
+def _tally(found: Sequence[ConditionAnswers]) -> str:
     """Return the number of conditions by answer, such as "a is smaller in 2 of 4 (12 to 31 %), not shown in 2"."""
     texts = []
     for name, count in Counter(each.winner for each in found if each.winner).most_common():

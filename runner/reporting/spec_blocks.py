@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING
 from runner.base.errors import nearest
 from runner.base.quantities import format_range, number, quantity
 from runner.plugins.metric_units import unit_of
-from runner.reporting.document import Block, Notice, Table
+from runner.reporting.document import Notice, ReportBlock, Table
 from runner.reporting.markup import literal
 from runner.reporting.metric_titles import title
 from runner.reporting.table import numbers
@@ -28,7 +28,7 @@ _ALL = "all of them"
 _DIGITS = 6  # of a bound, which is given, not measured
 
 
-def spec_blocks(run: Run) -> list[Block]:
+def spec_blocks(run: Run) -> list[ReportBlock]:
     """Return the bounds of a run's spec, with their reasons, and a notice where the run lacks one of the metrics."""
     if run.spec is None:
         return []
@@ -58,7 +58,7 @@ def spec_abstract(spec: "Spec") -> str:
     )
 
 
-def spec_of_several(runs: Sequence[Run], names: Sequence[str]) -> list[Block]:
+def spec_of_several(runs: Sequence[Run], names: Sequence[str]) -> list[ReportBlock]:
     """Return the number of kept repetitions for each bound of the specs of several runs."""
     rows = [
         [name, *row]

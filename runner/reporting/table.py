@@ -16,7 +16,7 @@ from runner.base.quantities import (
     smaller_units,
 )
 from runner.base.sanitize import one_line
-from runner.reporting.block import Block
+from runner.reporting.block import ReportBlock
 from runner.reporting.markup import literal
 
 PLAIN = 1e-4
@@ -87,7 +87,7 @@ def numbers(*titles: str) -> list[str | Column]:
 
 
 @dataclass(frozen=True)
-class Table(Block):
+class Table(ReportBlock):
     """A table.
 
     Attributes:

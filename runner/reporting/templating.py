@@ -24,7 +24,7 @@ _PART_OF_NAME = re.compile(r"(?<=[_=/,(])|(?<=\.)(?!\d)")
 _SIZE = re.compile(r'viewBox="[-\d.]+ [-\d.]+ ([\d.]+) ([\d.]+)"')
 
 
-class Code(str):
+class CodeText(str):
     """Text that is code of the target language already, and is inserted unchanged."""
 
     __slots__ = ()
@@ -70,11 +70,11 @@ def typst_value(value: object) -> str:
         TypeError: If the value is anything else.
     """
     if isinstance(value, str):
-        return value if hasattr(value, "__html__") else Code(quote_typst(value))
+        return value if hasattr(value, "__html__") else CodeText(quote_typst(value))
     if isinstance(value, bool):
-        return Code(str(value).lower())
+        return CodeText(str(value).lower())
     if isinstance(value, int | float):
-        return Code(repr(value))
+        return CodeText(repr(value))
     raise TypeError(f"a Typst template can insert strings and numbers, not {type(value).__name__}")
 
 
@@ -97,17 +97,17 @@ def bind_units(text: str) -> str:
     return _INSIDE_UNIT.sub("\u00a0", _BEFORE_UNIT.sub("\u00a0", text))
 
 
-def bound_html(text: str) -> Code:
+def bound_html(text: str) -> CodeText:
     """Return a string as HTML in which numbers and units stay together."""
-    return Code(bind_units(html.escape(plain(text))))
+    return CodeText(bind_units(html.escape(plain(text))))
 
 
-def bound_typst(text: str) -> Code:
+def bound_typst(text: str) -> CodeText:
     """Return a string as Typst code in which numbers and units stay together."""
-    return Code(bind_units(quote_typst(text)))
+    return CodeText(bind_units(quote_typst(text)))
 
 
-def name_parts(text: str) -> list[Code]:
+def name_parts(text: str) -> list[CodeText]:
     """Return the parts of a string, such as a key of a config, between which a line may break; numbers stay whole."""
     return [bound_html(part) for part in _PART_OF_NAME.split(text)]
 
@@ -118,7 +118,7 @@ def aspect(svg: str) -> str:
     return f"{size[1]} / {size[2]}" if size else "auto"
 
 
-def _environment(bound: Callable[[str], Code], **options: Any) -> jinja2.Environment:
+def _environment(bound: Callable[[str], CodeText], **options: Any) -> jinja2.Environment:
     environment = jinja2.Environment(
         loader=jinja2.FileSystemLoader(templates_dir(), encoding="utf-8"),
         autoescape=True,

@@ -50,7 +50,7 @@ WORDS = {
 """Every verdict on a claim, an equation or a robot file, and every kind of notice."""
 
 
-class Square(NamedTuple):
+class VerdictSquare(NamedTuple):
     """A square of the first screen.
 
     Attributes:
@@ -77,7 +77,7 @@ class Tally:
     """
 
     way: str
-    squares: tuple[Square, ...]
+    squares: tuple[VerdictSquare, ...]
     counts: tuple[tuple[str, int], ...]
 
     @property
@@ -91,6 +91,6 @@ class Tally:
         return ", ".join(told)
 
     @classmethod
-    def of(cls, way: str, squares: Iterable[Square], verdicts: Iterable[str]) -> "Tally":
+    def of(cls, way: str, squares: Iterable[VerdictSquare], verdicts: Iterable[str]) -> "Tally":
         """Return the tally of some verdicts, the most frequent first."""
         return cls(way, tuple(squares), tuple(Counter(verdicts).most_common()))

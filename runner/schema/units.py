@@ -104,7 +104,7 @@ _QUANTITY = re.compile(rf"\s*({_NUMBER})(\s*[a-zA-Z°µμ][\w°µμ ^²*·/]*|\s
 _LONGEST = 60  # characters
 
 
-class Quantity(NamedTuple):
+class TypedQuantity(NamedTuple):
     """A number with a unit, as typed.
 
     Attributes:
@@ -126,7 +126,7 @@ class Quantity(NamedTuple):
         return float(self.number * factor) if isinstance(factor, Decimal) else float(self.number) * factor
 
 
-def read_quantity(value: object) -> Quantity | None:
+def read_quantity(value: object) -> TypedQuantity | None:
     """Return the quantity that a string contains, with a known or unknown unit; None for any other value."""
     if not isinstance(value, str) or len(value) > _LONGEST:
         return None
@@ -134,7 +134,7 @@ def read_quantity(value: object) -> Quantity | None:
     if match is None or is_number(value):
         return None
     unit = match[2].strip()
-    return Quantity(Decimal(match[1].replace("_", "")), _BARE.get(unit.translate(_ALIKE), unit))
+    return TypedQuantity(Decimal(match[1].replace("_", "")), _BARE.get(unit.translate(_ALIKE), unit))
 
 
 def is_number(text: str) -> bool:

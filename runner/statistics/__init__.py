@@ -3,8 +3,8 @@
 from runner.statistics.effects import Effect, EffectAnalysis, axis_effects
 from runner.statistics.interval import SMALLEST_SAMPLE, Interval, median_interval, median_intervals
 from runner.statistics.paired import (
-    Comparison,
     Empty,
+    PairedComparison,
     compare_paired,
     fewest_pairs,
     holm,
@@ -15,11 +15,11 @@ from runner.statistics.paired import (
 
 __all__ = [
     "SMALLEST_SAMPLE",
-    "Comparison",
     "Effect",
     "EffectAnalysis",
     "Empty",
     "Interval",
+    "PairedComparison",
     "axis_effects",
     "compare_paired",
     "fewest_pairs",

@@ -7,7 +7,7 @@ must also exceed the integration error in it and 2 % of the larger of the two me
 import numpy as np
 
 from runner.base.quantities import ROUNDING
-from runner.statistics.paired import Comparison
+from runner.statistics.paired import PairedComparison
 
 ALPHA = 0.05
 """Probability of one or more false differences in a family of tests."""
@@ -16,12 +16,12 @@ SHARE = 0.02
 """Share of the larger median, or a fraction itself, up to which a difference does not count."""
 
 
-def larger_median(found: Comparison) -> float:
+def larger_median(found: PairedComparison) -> float:
     """Return the larger of the two finite medians by its size; 0 if neither is finite."""
     return max((abs(median) for median in found.medians if np.isfinite(median)), default=0.0)
 
 
-def least_difference(found: Comparison, is_fraction: bool = False) -> float:
+def least_difference(found: PairedComparison, is_fraction: bool = False) -> float:
     """Return the difference from which on it counts, in the unit of the metric.
 
     Args:
@@ -32,7 +32,7 @@ def least_difference(found: Comparison, is_fraction: bool = False) -> float:
     return max(share, ROUNDING, found.error or 0.0)
 
 
-def conclusion_sign(found: Comparison, is_shown: bool, is_fraction: bool = False) -> int:
+def conclusion_sign(found: PairedComparison, is_shown: bool, is_fraction: bool = False) -> int:
     """Return -1 where the second may be called smaller, 1 where larger, 0 where neither may be said.
 
     Args:

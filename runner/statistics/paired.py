@@ -121,7 +121,7 @@ NONE_EMPTY = Empty()
 
 
 @dataclass(frozen=True, eq=False)
-class Comparison:
+class PairedComparison:
     """Difference of b and a on the same seeds, in the pairs in which either has a value; there may be none.
 
     Attributes:
@@ -228,7 +228,7 @@ def fewest_pairs(level: float) -> int:
     return math.floor(1.0 - math.log2(level)) + 1
 
 
-def compare_paired(a: FloatArray, b: FloatArray) -> Comparison:
+def compare_paired(a: FloatArray, b: FloatArray) -> PairedComparison:
     """Compare two configs run on the same seeds.
 
     Args:
@@ -243,7 +243,7 @@ def compare_paired(a: FloatArray, b: FloatArray) -> Comparison:
         raise ValueError(f"pairs need two samples of one length, at least 1; found shapes {a.shape} and {b.shape}")
     kept = ~is_empty(a, b)
     empty = int(a.size - kept.sum())
-    return Comparison(a[kept], b[kept], b[kept] - a[kept], empty=Empty(empty, a.size, int(empty > 0)))
+    return PairedComparison(a[kept], b[kept], b[kept] - a[kept], empty=Empty(empty, a.size, int(empty > 0)))
 
 
 def is_empty(a: FloatArray, b: FloatArray) -> NDArray[np.bool_]:

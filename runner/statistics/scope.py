@@ -17,7 +17,7 @@ import numpy as np
 
 from runner.base.quantities import ROUNDING
 from runner.statistics.conclusion import ALPHA, SHARE, conclusion_sign, larger_median
-from runner.statistics.paired import Comparison, SignedRanks, fewest_pairs, holm_levels
+from runner.statistics.paired import PairedComparison, SignedRanks, fewest_pairs, holm_levels
 
 Word = Literal[
     "cannot be asked", "neither works", "only one works", "reversed", "vanishes", "holds, weaker", "holds", "appears",
@@ -39,7 +39,7 @@ _MOST_BAD = 0.5  # share of the draws with a failure, up to which a side works
 
 
 @dataclass(frozen=True)
-class Tried:
+class TriedVariation:
     """A variation of the question, as simulated.
 
     Attributes:
@@ -49,14 +49,14 @@ class Tried:
         spoilt: Share of the draws in which A, and in which B, fails, does not follow, is saturated or breaks its spec.
     """
 
-    comparison: Comparison | None
+    comparison: PairedComparison | None
     reason: str = ""
     lost: tuple[float, float] = (0.0, 0.0)
     spoilt: tuple[float, float] = (0.0, 0.0)
 
 
 @dataclass(frozen=True)
-class Judged:
+class JudgedVariation:
     """A variation with its word.
 
     Attributes:
@@ -81,7 +81,7 @@ class Judged:
 
 
 @dataclass(frozen=True)
-class Effect:
+class AskedEffect:
     """The asked effect: the answer of the question on fresh seeds.
 
     Attributes:
@@ -96,7 +96,7 @@ class Effect:
     scale: float | None = None
     is_fraction: bool = False
 
-    def of(self, found: Comparison) -> float:
+    def of(self, found: PairedComparison) -> float:
         """Return the scale of a comparison."""
         return 1.0 if self.is_fraction else self.scale or max(larger_median(found), ROUNDING)
 
@@ -116,11 +116,11 @@ def pairs_of_looks(first: int) -> list[int]:
     return [first << look for look in range(LOOKS)]
 
 
-Ask = Callable[[Sequence[int], int], Sequence[Tried]]
+Ask = Callable[[Sequence[int], int], Sequence[TriedVariation]]
 """Function that simulates some variations, by their numbers, with a number of pairs."""
 
 
-def judge_in_looks(ask: Ask, variations: int, asked: Effect) -> list[Judged]:
+def judge_in_looks(ask: Ask, variations: int, asked: AskedEffect) -> list[JudgedVariation]:
     """Return the words of all variations; those that are not shown go on with more pairs.
 
     Args:
@@ -128,7 +128,7 @@ def judge_in_looks(ask: Ask, variations: int, asked: Effect) -> list[Judged]:
         variations: Number of variations.
         asked: The asked effect.
     """
-    words: dict[int, Judged] = {}
+    words: dict[int, JudgedVariation] = {}
     left = list(range(variations))
     for pairs in pairs_of_looks(first_pairs(variations)):
         tried = ask(left, pairs)
@@ -139,7 +139,7 @@ def judge_in_looks(ask: Ask, variations: int, asked: Effect) -> list[Judged]:
     return [words[place] for place in sorted(words)]
 
 
-def judge(tried: Sequence[Tried], asked: Effect, level: float = ALPHA / LOOKS) -> list[Judged]:
+def judge(tried: Sequence[TriedVariation], asked: AskedEffect, level: float = ALPHA / LOOKS) -> list[JudgedVariation]:
     """Return the word of each variation of a family at one look.
 
     Args:
@@ -162,7 +162,7 @@ def judge(tried: Sequence[Tried], asked: Effect, level: float = ALPHA / LOOKS) -
     return found
 
 
-def came_back(found: Comparison, stored: int, level: float, is_fraction: bool = False) -> int | None:
+def came_back(found: PairedComparison, stored: int, level: float, is_fraction: bool = False) -> int | None:
     """Return the sign of the asked case on fresh seeds if the stored answer comes back; None if it does not.
 
     Args:
@@ -176,27 +176,27 @@ def came_back(found: Comparison, stored: int, level: float, is_fraction: bool = 
     return sign if sign == stored else None
 
 
-def _compared(one: Tried) -> Comparison:
+def _compared(one: TriedVariation) -> PairedComparison:
     if one.comparison is None:
         raise ValueError("a variation without a comparison has no test")
     return one.comparison
 
 
-def _without_test(one: Tried) -> Judged | None:
+def _without_test(one: TriedVariation) -> JudgedVariation | None:
     """Return the word of a variation that needs no test; None if it needs one."""
     pairs = one.comparison.n if one.comparison else 0
     if one.reason:
-        return Judged("cannot be asked")
+        return JudgedVariation("cannot be asked")
     if min(one.spoilt) > _MOST_BAD:
-        return Judged("neither works", pairs=pairs)
+        return JudgedVariation("neither works", pairs=pairs)
     if (one.lost[0] > _MOST_BAD) != (one.lost[1] > _MOST_BAD):
-        return Judged("only one works", pairs=pairs, works=int(one.lost[0] > _MOST_BAD))
+        return JudgedVariation("only one works", pairs=pairs, works=int(one.lost[0] > _MOST_BAD))
     if one.comparison is None:
-        return Judged("cannot be asked")
+        return JudgedVariation("cannot be asked")
     return None
 
 
-def _judge_one(found: Comparison, asked: Effect, is_shown: bool, level: float) -> Judged:
+def _judge_one(found: PairedComparison, asked: AskedEffect, is_shown: bool, level: float) -> JudgedVariation:
     scale = asked.of(found)
     size = found.difference / scale
     ends = (found.difference, found.difference) if found.exact else found.interval(level)
@@ -208,10 +208,10 @@ def _judge_one(found: Comparison, asked: Effect, is_shown: bool, level: float) -
     if word == "not shown" and not found.exact:
         needed = found.pairs_needed(max(abs(size), asked.margin) * scale, level)
         needed = None if needed is None else max(needed, found.n + 1)
-    return Judged(word, size, low, high, found.n, needed=needed, log_ratio=_log_ratio(found, level))
+    return JudgedVariation(word, size, low, high, found.n, needed=needed, log_ratio=_log_ratio(found, level))
 
 
-def _word(sign: int, low: float | None, high: float | None, asked: Effect) -> Word:
+def _word(sign: int, low: float | None, high: float | None, asked: AskedEffect) -> Word:
     """Return the word of a sign and the ends of an interval, both relative to the scale."""
     within = low is not None and high is not None and -asked.margin <= low and high <= asked.margin
     if not asked.sign:
@@ -226,7 +226,7 @@ def _word(sign: int, low: float | None, high: float | None, asked: Effect) -> Wo
     return "holds" if sign else "not shown"
 
 
-def _log_ratio(found: Comparison, level: float) -> tuple[float, float, float] | None:
+def _log_ratio(found: PairedComparison, level: float) -> tuple[float, float, float] | None:
     """Return the logarithm of the ratio B / A with its interval; None if a value is not positive or pairs are few."""
     both = np.stack([found.a, found.b])
     if found.exact or not ((both > 0.0) & np.isfinite(both)).all():

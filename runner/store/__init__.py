@@ -11,15 +11,15 @@ if TYPE_CHECKING:
     from runner.store.opening import open_stored
     from runner.store.run import Run, judge_run, open_run
     from runner.store.seal import DamagedError, SchemaError, simulated_part
-    from runner.store.shards import Outcome
+    from runner.store.shards import RunOutcome
     from runner.store.sweep import Sweep, open_runs, open_sweep, write_grid, write_sweep
 
 __all__ = [
     "Calibration",
     "DamagedError",
     "Finished",
-    "Outcome",
     "Run",
+    "RunOutcome",
     "SchemaError",
     "Sweep",
     "find_calibration",
@@ -47,7 +47,7 @@ _MODULES = {
     "identity": "run_hash run_hashes",
     "run": "Run judge_run open_run",
     "seal": "DamagedError SchemaError simulated_part",
-    "shards": "Outcome",
+    "shards": "RunOutcome",
     "sweep": "Sweep open_runs open_sweep write_grid write_sweep",
 }
 

@@ -90,7 +90,7 @@ class Bands:
 
 
 @dataclass(frozen=True)
-class Finding:
+class BandResult:
     """Comparison of one metric of a run with its band.
 
     Attributes:
@@ -141,13 +141,13 @@ def load_baseline(path: Path, name: str = "") -> Bands | SweepBaseline:
     return file if isinstance(file, SweepBaseline) else Bands(name or str(path), file.metrics)
 
 
-def check_run(run: Run, baseline: Bands) -> list[Finding]:
+def check_run(run: Run, baseline: Bands) -> list[BandResult]:
     """Compare the medians of a run with a baseline; every metric of a failed run is out of its band."""
     findings = []
     for metric, band in baseline.bands.items():
         value = run.metrics[metric].median if metric in run.metrics else None
         good = run.status == "ok" and value is not None and band.range.holds(value)
-        findings.append(Finding(metric, value, band, good))
+        findings.append(BandResult(metric, value, band, good))
     return findings
 
 

@@ -16,7 +16,7 @@ from runner.base.errors import StoreError
 from runner.store.names import Names, best_of_each, look_up
 from runner.store.run import Run, open_run
 from runner.store.seal import DamagedError, check_job, read_json, sealed_json
-from runner.store.shards import Outcome, Outcomes, open_row, outcome, read_outcomes, shard_files
+from runner.store.shards import Outcomes, RunOutcome, open_row, outcome, read_outcomes, shard_files
 
 FINER = "finer"
 _REMEDY = "delete it: `runner compare` computes it again"
@@ -35,7 +35,7 @@ def find_run(outputs: Path, name: str) -> Run | None:
     return open_run(folder)
 
 
-def find_outcome(outputs: Path, name: str) -> Outcome | None:
+def find_outcome(outputs: Path, name: str) -> RunOutcome | None:
     """Return the outcome of the finished run with a hash in its own run folder, or None if there is none.
 
     Raises:
@@ -101,7 +101,7 @@ class Finished(Outcomes):
         """Return the index in `names` of each given run, shape (n,); -1 for a run that is in no shard."""
         return look_up(names.texts, self.names)
 
-    def in_folder(self, name: str) -> Outcome | None:
+    def in_folder(self, name: str) -> RunOutcome | None:
         """Return the outcome of a run in its own run folder, or None if there is none."""
         if name not in self._folders:
             return None
@@ -115,7 +115,7 @@ class Finished(Outcomes):
         """Return the shard that contains the run at an index of `names`."""
         return self._shards[int(self.shard[place])]
 
-    def outcome(self, name: str) -> Outcome | None:
+    def outcome(self, name: str) -> RunOutcome | None:
         """Return the outcome of a run, or None if it is not finished."""
         place, own = int(self.places_of(Names.of([name]))[0]), self.in_folder(name)
         ends = [*([] if own is None else [own]), *([] if place < 0 else [self[place]])]

@@ -15,7 +15,7 @@ _OF_SWEEPS: tuple[Kind, ...] = ("sweep", "tuning", "challenge")
 
 
 @dataclass(frozen=True)
-class Entry:
+class ListedResult:
     """A stored result.
 
     Attributes:
@@ -38,7 +38,7 @@ class Entry:
         return next((path for path in (self.folder.parent, self.folder) if path.is_symlink()), None)
 
 
-def list_entries(outputs: Path) -> list[Entry]:
+def list_entries(outputs: Path) -> list[ListedResult]:
     """Return all stored results of an outputs folder, the newest first; those in shards have no folder of their own.
 
     Raises:
@@ -50,7 +50,7 @@ def list_entries(outputs: Path) -> list[Entry]:
     return sorted(found, key=lambda entry: (-entry.written, str(entry.folder)))
 
 
-def runs_of_sweeps(entries: Sequence[Entry]) -> set[str]:
+def runs_of_sweeps(entries: Sequence[ListedResult]) -> set[str]:
     """Return the names of the runs that belong to sweeps, tunings and challenges.
 
     Raises:
@@ -77,7 +77,7 @@ def _fresh_runs(path: Path) -> set[str]:
         raise DamagedError(f"cannot read {path}: fresh does not name two runs; {remedy}") from error
 
 
-def removable(entries: Sequence[Entry], before: float) -> tuple[list[Entry], list[str]]:
+def removable(entries: Sequence[ListedResult], before: float) -> tuple[list[ListedResult], list[str]]:
     """Return the results that were written before a time and can be removed, and the reasons why others stay.
 
     Runs of sweeps and tunings that stay also stay, and so does a result that a link leads to.
@@ -102,7 +102,7 @@ def removable(entries: Sequence[Entry], before: float) -> tuple[list[Entry], lis
     return found, why
 
 
-def remove(entries: Sequence[Entry]) -> None:
+def remove(entries: Sequence[ListedResult]) -> None:
     """Remove results with all their files: sweeps before their runs, so that none lacks a run.
 
     Raises:
@@ -115,7 +115,7 @@ def remove(entries: Sequence[Entry]) -> None:
             raise StoreError(f"cannot remove {entry.folder}: {error.strerror or error.args[0]}") from error
 
 
-def _entries(kind: Kind, folder: Path) -> Iterator[Entry]:
+def _entries(kind: Kind, folder: Path) -> Iterator[ListedResult]:
     of = KINDS[kind]
     for path in folder.glob("[!.]*"):
         if not path.is_dir():
@@ -126,7 +126,7 @@ def _entries(kind: Kind, folder: Path) -> Iterator[Entry]:
             continue
         needed = (*of.files[:1], *of.more) if kind != "report" else ()
         size = sum(each.st_size for each in files.values())
-        yield Entry(kind, path, marks[0].st_mtime, size, files.keys() >= set(needed))
+        yield ListedResult(kind, path, marks[0].st_mtime, size, files.keys() >= set(needed))
 
 
 def _files(folder: str | Path, within: str = "", deep: bool = True) -> Iterator[tuple[str, os.stat_result]]:

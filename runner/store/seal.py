@@ -107,7 +107,7 @@ def read_json(path: Path, remedy: str) -> dict[str, Any]:
     except OSError as error:
         raise DamagedError(f"cannot read {path}: {error.strerror}; {remedy}") from error
     except ValueError as error:
-        raise DamagedError(f"cannot read {path}: it is damaged: {_short(error)}; {remedy}") from error
+        raise DamagedError(f"cannot read {path}: it is damaged: {_first_characters(error)}; {remedy}") from error
     schema = record.get("schema") if isinstance(record, dict) else None
     if type(schema) is not int:
         raise DamagedError(f"cannot read {path}: it is damaged: it names no schema; {remedy}")
@@ -175,7 +175,7 @@ def _is_whole(content: bytes) -> bool:
     return digest(blank).encode() == found[1]
 
 
-def _short(error: Exception) -> str:
+def _first_characters(error: Exception) -> str:
     return " ".join(str(error).split())[:200]
 
 

@@ -42,7 +42,7 @@ _REMEDY = "remove it, and the sweep's command simulates its runs again"
 
 
 @dataclass(frozen=True)
-class Outcome:
+class RunOutcome:
     """Outcome of a finished run.
 
     Attributes:
@@ -78,7 +78,7 @@ class ShardRow:
         values: Values of the metrics, shape (repetitions, metrics), NaN for none.
     """
 
-    outcome: Outcome
+    outcome: RunOutcome
     config: str
     urdf: str
     record: str
@@ -86,11 +86,11 @@ class ShardRow:
     values: FloatArray
 
 
-def outcome(run: Run) -> Outcome:
+def outcome(run: Run) -> RunOutcome:
     """Return the outcome of a run."""
     failure, machine = run.failure_record, read_machine(run.record.get("provenance", {}).get("machine"))
     cut_short = failure is not None and failure["time"] is None
-    return Outcome(run.hash, run.failure or "", cut_short, len(run.caveats), machine)
+    return RunOutcome(run.hash, run.failure or "", cut_short, len(run.caveats), machine)
 
 
 def shard_files(outputs: Path) -> list[Path]:
@@ -169,7 +169,7 @@ def write_shard(outputs: Path, name: str, runs: Sequence[Run | ShardRow]) -> Pat
 
 
 @dataclass(eq=False)
-class Outcomes(Sequence[Outcome]):
+class Outcomes(Sequence[RunOutcome]):
     """Outcomes of runs in shards, in a few bytes each.
 
     Attributes:
@@ -195,7 +195,7 @@ class Outcomes(Sequence[Outcome]):
         row = range(len(self))[row]
         failure, name = self.failures.get(row, ""), self.names[row].decode()
         cut_short = bool(self.rank[row] == _CUT_SHORT)
-        return Outcome(name, failure, cut_short, int(self.caveats[row]), self.machines[row])
+        return RunOutcome(name, failure, cut_short, int(self.caveats[row]), self.machines[row])
 
 
 def read_outcomes(path: Path) -> Outcomes:

@@ -94,7 +94,7 @@ def _rows(runs: Iterable[Named], texts: JsonTexts, batcher: BatchSimulator) -> I
         )
         for (name, run), record in zip(some, records, strict=True):
             config = run.config
-            end = store.Outcome(name, "", False, len(run.caveats.caveats), this_machine())
+            end = store.RunOutcome(name, "", False, len(run.caveats.caveats), this_machine())
             yield ShardRow(end, texts.of(config.resolved), config.arm.urdf, record, metrics, run.values)
 
 

@@ -18,7 +18,7 @@ from runner.store.identity import json_text
 from runner.store.names import Names, Texts
 from runner.sweeps.differing import Resolved, is_one_arm, resolve
 from runner.sweeps.job import CalibrationJob, check_job
-from runner.sweeps.plan import Block, Plan
+from runner.sweeps.plan import Plan, SeedBlock
 
 _PROBLEMS_SHOWN = 20
 
@@ -102,7 +102,7 @@ def _report(plan: Plan, problems: Mapping[str, tuple[int, int]]) -> NoReturn:
     raise ConfigError([_describe(plan, problem, *where) for problem, where in found[:_PROBLEMS_SHOWN]], hint)
 
 
-def _names(config: RunConfig, block: Block) -> Texts:
+def _names(config: RunConfig, block: SeedBlock) -> Texts:
     """Return the names of the runs of a block, shape (n,)."""
     if block.seeds is None:
         return Names.of([store.run_hash(config.resolved, config.arm.urdf)]).texts

@@ -128,7 +128,7 @@ _NAMED = 4
 
 
 @dataclass(frozen=True)
-class Difference:
+class UnsweptDifference:
     """Value that differs between cells although it was not swept.
 
     Attributes:
@@ -200,7 +200,7 @@ class Resolved:
             codes = self._codes[key] = longer
         codes[slice(cells.start, cells.stop, cells.step) if isinstance(cells, range) else cells] = code
 
-    def differences(self, axes: Sequence["Axis"]) -> list[Difference]:
+    def differences(self, axes: Sequence["Axis"]) -> list[UnsweptDifference]:
         """Return the differences beyond the axes, in the order of their first occurrence."""
         found = []
         for key, some in self._codes.items():
@@ -223,7 +223,7 @@ class Resolved:
         return found
 
 
-def in_words(differences: Sequence[Difference]) -> str:
+def in_words(differences: Sequence[UnsweptDifference]) -> str:
     """Return a line with the number of differences and the first of them; empty if there are none."""
     if not differences:
         return ""
@@ -243,7 +243,7 @@ def is_of_option(key: str) -> bool:
 
 def _difference(
     key: str, codes: Levels, texts: Sequence[str | None], present: NDArray[np.bool_], axes: Sequence["Axis"]
-) -> Difference:
+) -> UnsweptDifference:
     codes = codes[present]
     for count in range(1, min(len(axes), _MOST_TOGETHER) + 1):
         for some in itertools.combinations(axes, count):
@@ -258,8 +258,8 @@ def _difference(
                     name = " and ".join(axis.text(int(place[cell])) for axis, place in zip(some, places, strict=True))
                     levels.setdefault(texts[codes[cell]] or "–", []).append(name)
                 values = [(", ".join(names), text) for text, names in levels.items()]
-                return Difference(key, tuple(axis.name for axis in some), values)
-    return Difference(key, (), [("", texts[code] or "–") for code in np.unique(codes).tolist()])
+                return UnsweptDifference(key, tuple(axis.name for axis in some), values)
+    return UnsweptDifference(key, (), [("", texts[code] or "–") for code in np.unique(codes).tolist()])
 
 
 def _numbered(levels: Sequence[Levels], counts: Sequence[int]) -> Levels:

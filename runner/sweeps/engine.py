@@ -20,7 +20,7 @@ from runner.base.errors import RunnerError, TemporaryError
 from runner.sweeps.deadline import STUCK
 from runner.sweeps.queue import Queue
 from runner.sweeps.remote import GO_ON, Remote, hush, in_place
-from runner.sweeps.work import Chunk, Report, give_up, work
+from runner.sweeps.work import Chunk, ChunkResult, give_up, work
 
 _DEATHS = 3  # worker deaths during one run before the run counts as the cause
 _LOOK_EVERY = 5.0  # s between two looks for workers
@@ -30,7 +30,7 @@ _MEMORY = {"MALLOC_TRIM_THRESHOLD_": 2**28, "MALLOC_MMAP_THRESHOLD_": 2**25}  # 
 _END_WITHIN = 0.5  # s for a worker after Ctrl-C
 
 
-def in_process(queue: Queue, go_on: Callable[[], bool] = lambda: True) -> Generator[Report]:
+def in_process(queue: Queue, go_on: Callable[[], bool] = lambda: True) -> Generator[ChunkResult]:
     """Process a queue in this process; yield the report of each chunk.
 
     Args:
@@ -44,7 +44,7 @@ def in_process(queue: Queue, go_on: Callable[[], bool] = lambda: True) -> Genera
         yield report
 
 
-def on_cluster(queue: Queue, client: Any, remote: Remote | None = None) -> Generator[Report]:
+def on_cluster(queue: Queue, client: Any, remote: Remote | None = None) -> Generator[ChunkResult]:
     """Process a queue on a Dask cluster with a bounded number of chunks in flight; yield the report of each chunk.
 
     Args:
@@ -90,7 +90,7 @@ def on_cluster(queue: Queue, client: Any, remote: Remote | None = None) -> Gener
                 raise CancelledError("its tasks are gone")
             elif isinstance(future.exception(), KilledWorker):
                 # All runs that the worker had are suspects until each has been made separately.
-                report = _give_up(chunk) if chunk.name in suspects else Report(queue.give_back(chunk), "", 0.0)
+                report = _give_up(chunk) if chunk.name in suspects else ChunkResult(queue.give_back(chunk), "", 0.0)
             else:
                 raise future.exception()
             future.release()
@@ -103,7 +103,7 @@ def on_cluster(queue: Queue, client: Any, remote: Remote | None = None) -> Gener
         client.cancel(list(under_way))
 
 
-def _work(chunk: Chunk, topic: str) -> Report:
+def _work(chunk: Chunk, topic: str) -> ChunkResult:
     """Execute the jobs of a chunk in a worker, which publishes the number of finished ticks on a topic.
 
     A worker that closes, as after Ctrl-C, starts no further job.
@@ -118,11 +118,11 @@ def _work(chunk: Chunk, topic: str) -> Report:
             lambda: worker.status not in (Status.closing, Status.closed),
         )
     except OSError as error:
-        report = Report([], f"a worker failed: {error}", 0.0)
+        report = ChunkResult([], f"a worker failed: {error}", 0.0)
     return replace(report, host=socket.gethostname(), worker=worker.address)
 
 
-def _without_worker(report: Report, chunk: Chunk, queue: Queue, remote: Remote) -> Report:
+def _without_worker(report: ChunkResult, chunk: Chunk, queue: Queue, remote: Remote) -> ChunkResult:
     """Leave out a worker that reported trouble, and queue its missing jobs again; return the stored ones.
 
     Raises:
@@ -132,7 +132,7 @@ def _without_worker(report: Report, chunk: Chunk, queue: Queue, remote: Remote) 
     if not set(remote.usable()) - {report.worker}:
         raise TemporaryError(f"{reason}, and no other worker is left; {GO_ON}")
     remote.leave_out(report.worker, reason)
-    return Report(queue.give_back(chunk, as_suspects=False), "", 0.0)
+    return ChunkResult(queue.give_back(chunk, as_suspects=False), "", 0.0)
 
 
 def _next_done(client: Any, futures: Mapping[Any, Sequence[str] | None]) -> Any:
@@ -151,7 +151,7 @@ def _next_done(client: Any, futures: Mapping[Any, Sequence[str] | None]) -> Any:
     return next(future for future in futures if future.done())
 
 
-def _give_up(chunk: Chunk) -> Report:
+def _give_up(chunk: Chunk) -> ChunkResult:
     reason = f"its worker process died {_DEATHS + 1} times"
     if chunk.rules.settings.time_limit is not None:
         reason += f", by itself or because it could not be interrupted for {STUCK:g} s after sweep.time_limit"

@@ -20,7 +20,7 @@ from runner.store.finished import Finished, finer_names, read_finer
 from runner.store.run import Run
 from runner.store.seal import DamagedError
 from runner.store.sweep import InShard, Sweep
-from runner.sweeps.differing import Difference, Resolved
+from runner.sweeps.differing import Resolved, UnsweptDifference
 from runner.sweeps.drawn import draws_nothing
 from runner.sweeps.gathering import Gathered
 from runner.sweeps.status import find_status
@@ -68,7 +68,7 @@ class Measurements:
     caveats: Sequence[Sequence[Mapping[str, Any]]] = ()
     caveat_rules: Sequence[tuple[Mapping[str, Any] | None, int]] = ()
     seeds: Sequence[int] | NDArray[np.int64] = ()
-    differences: Sequence[Difference] = ()
+    differences: Sequence[UnsweptDifference] = ()
     configs: Sequence[tuple[Mapping[str, Any], NDArray[np.intp]]] = ()
     finer: Mapping[str, FloatArray] = field(default_factory=dict)
     rounding: Mapping[str, FloatArray] = field(default_factory=dict)

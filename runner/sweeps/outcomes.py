@@ -7,13 +7,13 @@ import numpy as np
 from numpy.typing import NDArray
 
 from runner.base.machine import Machine
-from runner.store import Finished, Outcome
+from runner.store import Finished, RunOutcome
 from runner.store.names import Names, best_of_each, look_up
 
 _NOT_YET, _CUT_SHORT = -1, 2
 
 
-class Ends(Mapping[str, Outcome]):
+class Ends(Mapping[str, RunOutcome]):
     """Outcomes of the finished jobs of a sweep, by name.
 
     Args:
@@ -30,7 +30,7 @@ class Ends(Mapping[str, Outcome]):
         self._machines = np.full(len(first), Machine(), dtype=object)
         self._places = look_up(names.texts, self._names).astype(np.int32)
 
-    def add(self, outcomes: Iterable[Outcome]) -> None:
+    def add(self, outcomes: Iterable[RunOutcome]) -> None:
         """Add the outcomes of finished jobs, which must belong to the sweep."""
         given = list(outcomes)
         places = look_up(Names.of(end.name for end in given).texts, self._names)
@@ -77,9 +77,9 @@ class Ends(Mapping[str, Outcome]):
     def __iter__(self) -> Iterator[str]:
         return iter(Names(self._names[self._rank != _NOT_YET]))
 
-    def __getitem__(self, name: str) -> Outcome:
+    def __getitem__(self, name: str) -> RunOutcome:
         place = int(look_up(Names.of([name]).texts, self._names)[0])
         if place < 0 or self._rank[place] == _NOT_YET:
             raise KeyError(name)
         rank, caveats = int(self._rank[place]), int(self._caveats[place])
-        return Outcome(name, self._failures.get(place, ""), rank == _CUT_SHORT, caveats, self._machines[place])
+        return RunOutcome(name, self._failures.get(place, ""), rank == _CUT_SHORT, caveats, self._machines[place])

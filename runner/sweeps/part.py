@@ -23,13 +23,13 @@ from runner.store.axes import Axes
 from runner.store.names import Names, Texts
 from runner.store.sweep import Sweep, without_keys
 from runner.sweeps.check import Checked
-from runner.sweeps.plan import Alike, Block, Grid, Plan
+from runner.sweeps.plan import Alike, Grid, Plan, SeedBlock
 from runner.sweeps.swept import SweptKey
 
 _MEMORY = Memory(4096)
 
 
-class Part(Plan):
+class GridPart(Plan):
     """Cells of a grid that have the same remainder; cell i is the cell `number + i * parts` of the grid.
 
     Args:
@@ -67,14 +67,14 @@ class Part(Plan):
         """Return the composed config of a cell; see Plan."""
         return self._without_part(self.whole.composed(self.cells[cell]))
 
-    def blocks(self) -> Iterator[Block]:
+    def blocks(self) -> Iterator[SeedBlock]:
         """Yield the cells in blocks; see Plan."""
         for block in self.whole.blocks():
             own = _common(block.cells, self.cells)
             if own:
                 places = range(self.cells.index(own[0]), self.cells.index(own[-1]) + 1, own.step // self.cells.step)
                 first, step = block.cells.index(own[0]), own.step // block.cells.step
-                yield Block(places, None if block.seeds is None else block.seeds[first::step])
+                yield SeedBlock(places, None if block.seeds is None else block.seeds[first::step])
 
     def alike(self, cells: Sequence[int]) -> Iterator[tuple[Sequence[int], Sequence[Composed]]]:
         """Yield groups of the given cells whose configs differ only in the seed, with their configs; see Plan."""
@@ -110,10 +110,10 @@ def own_part(plan: Plan) -> Plan:
         part = None if text is None else split_part(str(text))
     except (ConfigError, ValueError):  # the check of the plan reports it
         return plan
-    return plan if part is None else Part(plan, *part)
+    return plan if part is None else GridPart(plan, *part)
 
 
-def share_sweep(part: Part, checked: Checked, command: str) -> Path:
+def share_sweep(part: GridPart, checked: Checked, command: str) -> Path:
     """Return the folder of the sweep of a whole grid; the first of its parts names all runs and writes it.
 
     Args:
@@ -164,7 +164,7 @@ def _name_all(plan: Grid) -> Names:
     return Names(names)
 
 
-def _names(composed: Composed, block: Block) -> Texts:
+def _names(composed: Composed, block: SeedBlock) -> Texts:
     problems = Problems(_MEMORY)
     groups = read_groups(composed.resolved, problems)
     outline = problems.recall(read_outline, groups.get("robot"), composed.config_dirs)

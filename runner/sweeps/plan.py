@@ -22,7 +22,7 @@ _SEED = "seed"
 
 
 @dataclass(frozen=True)
-class Block:
+class SeedBlock:
     """Cells whose configs differ only in the seed.
 
     Attributes:
@@ -96,9 +96,9 @@ class Plan(ABC):
         """Return the axes of a grid, whose cells have every combination of values; None if the plan is not a grid."""
         return None
 
-    def blocks(self) -> Iterator[Block]:
+    def blocks(self) -> Iterator[SeedBlock]:
         """Yield all cells, in blocks that differ only in the seed."""
-        return (Block(range(cell, cell + 1)) for cell in range(len(self)))
+        return (SeedBlock(range(cell, cell + 1)) for cell in range(len(self)))
 
     def alike(self, cells: Sequence[int]) -> Iterator[tuple[Sequence[int], Sequence[Composed]]]:
         """Yield groups of the given cells whose configs differ only in the seed, with their configs."""
@@ -160,7 +160,7 @@ class Grid(Plan):
         """Return the axes; see Plan."""
         return self._axes
 
-    def blocks(self) -> Iterator[Block]:
+    def blocks(self) -> Iterator[SeedBlock]:
         """Yield the cells in blocks; see Plan."""
         place = self._place_of_seeds
         if place is None:
@@ -171,9 +171,9 @@ class Grid(Plan):
             for first in range(start, start + stride):
                 cells = range(first, first + stride * len(seeds), stride)
                 if self._seeds_stand_alone(first, place):
-                    yield Block(cells, seeds)
+                    yield SeedBlock(cells, seeds)
                 else:
-                    yield from (Block(range(cell, cell + 1)) for cell in cells)
+                    yield from (SeedBlock(range(cell, cell + 1)) for cell in cells)
 
     def alike(self, cells: Sequence[int]) -> Iterator[tuple[Sequence[int], Sequence[Composed]]]:
         """Yield groups of the given cells whose configs differ only in the seed, with their configs; see Plan."""

@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 from runner import store
 from runner.config.composed import Composed
 from runner.store.shards import next_number, shard_name
-from runner.sweeps.work import Chunk, Part, Report, find_stored
+from runner.sweeps.work import Chunk, ChunkResult, SeedPart, find_stored
 from runner.sweeps.writer import Rules
 
 _SECONDS_PER_CHUNK = 1.0  # long against the 5 ms that a chunk costs, short against a sweep
@@ -103,7 +103,7 @@ class Queue:
         """Number of ticks of the finished jobs, plus the finished ticks of the chunks in flight."""
         return self._ticks_done + sum(list(self._ticks_of.values()))
 
-    def learn(self, report: Report) -> None:
+    def learn(self, report: ChunkResult) -> None:
         """Update the progress and the time for a tick from the report of a chunk."""
         ticks = sum(int(self._costs[self._under_way.pop(end.name)]) for end in report.outcomes)
         self._ticks_done += ticks
@@ -112,7 +112,7 @@ class Queue:
             known = self._seconds_per_tick
             self._seconds_per_tick = seconds if known is None else 0.5 * (known + seconds)
 
-    def give_back(self, chunk: Chunk, as_suspects: bool = True) -> list[store.Outcome]:
+    def give_back(self, chunk: Chunk, as_suspects: bool = True) -> list[store.RunOutcome]:
         """Queue the unfinished jobs of a chunk again; return the outcomes of its stored jobs.
 
         Args:
@@ -136,7 +136,7 @@ class Queue:
         for own, configs in self._alike(cells):
             names = [self._names[cell] for cell in own]
             self._under_way |= dict(zip(names, own, strict=True))
-            parts.append(Part(names, configs))
+            parts.append(SeedPart(names, configs))
         name = shard_name(self._number, self.rules.command, self._handed_out)
         self._ticks_of[name] = 0
         return Chunk(name, self.rules, parts)

@@ -14,7 +14,7 @@ MOST_RUNS = 50
 
 
 @dataclass
-class Sensitivity:
+class RoundingSensitivity:
     """Metrics of the runs of a sweep that are sensitive to rounding.
 
     Attributes:
@@ -39,7 +39,7 @@ class Sensitivity:
         return "".join(f"\n{text}" for text in texts)
 
 
-def find_sensitive(sweep: Sweep) -> Sensitivity:
+def find_sensitive(sweep: Sweep) -> RoundingSensitivity:
     """Find the sensitive metrics of the runs of a sweep, from their records or by simulation of repetition 0.
 
     Nothing is simulated if a run failed, because such a sweep has no baseline.
@@ -47,10 +47,10 @@ def find_sensitive(sweep: Sweep) -> Sensitivity:
     Raises:
         StoreError: if a run is missing or damaged.
     """
-    found, unknown = Sensitivity(), dict[str, Run]()
+    found, unknown = RoundingSensitivity(), dict[str, Run]()
     for run in sweep.runs():
         if run.failure is not None:
-            return Sensitivity()
+            return RoundingSensitivity()
         if run.rounding is not None:
             found.changes[run.hash] = _sensitive(run.rounding["metrics"])
         elif run.hash in unknown or len(unknown) < MOST_RUNS:

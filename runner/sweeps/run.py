@@ -36,12 +36,12 @@ from runner.sweeps.differing import Resolved
 from runner.sweeps.engine import in_process, local_client, on_cluster
 from runner.sweeps.estimate import START_UP, Estimate, Pace, estimate
 from runner.sweeps.outcomes import Ends
-from runner.sweeps.part import Part, own_part, share_sweep
+from runner.sweeps.part import GridPart, own_part, share_sweep
 from runner.sweeps.plan import Plan
 from runner.sweeps.queue import Queue
 from runner.sweeps.remote import GO_ON, check_address, remote_workers
 from runner.sweeps.typed import plan_typed
-from runner.sweeps.work import Report, find_calibrated
+from runner.sweeps.work import ChunkResult, find_calibrated
 from runner.sweeps.writer import Rules, TraceKeeping, one_in
 
 _DAMAGE_SHOWN = 10
@@ -151,7 +151,7 @@ def run_sweep(plan: Plan, engine: Engine, command: str, accept_cut_short: bool =
     names, outputs = checked.names, checked.outputs
     progress.begin("looking for stored runs")
     store.prepare(outputs)
-    folder = share_sweep(plan, checked, command) if isinstance(plan, Part) else write_sweep(plan, checked, command)
+    folder = share_sweep(plan, checked, command) if isinstance(plan, GridPart) else write_sweep(plan, checked, command)
     with at_work(folder) as name:
         note(folder)
         rules = make_rules(checked.first.sweep, folder, len(plan.whole), name)
@@ -159,7 +159,7 @@ def run_sweep(plan: Plan, engine: Engine, command: str, accept_cut_short: bool =
         ends, stored = make_missing(plan, checked, rules, engine)
     failed = [(cell, ends[names[cell]]) for cell in ends.failed.tolist()]
     failures = [(plan.overrides(cell), end.failure, rules.details(end.name)) for cell, end in failed]
-    part = plan.name if isinstance(plan, Part) else ""
+    part = plan.name if isinstance(plan, GridPart) else ""
     return Ended(folder, outputs, names, ends, failures, len(ends.left), stored, checked.resolved, part)
 
 
@@ -254,7 +254,7 @@ def _counts(finished: store.Finished, places: NDArray[np.intp], rules: Rules) ->
     return counts
 
 
-def _find_calibrated(rules: Rules, name: str, damage: list[str]) -> store.Outcome | None:
+def _find_calibrated(rules: Rules, name: str, damage: list[str]) -> store.RunOutcome | None:
     try:
         return find_calibrated(rules.outputs, name)
     except store.DamagedError as error:
@@ -270,7 +270,7 @@ def make_jobs(
     engine: Engine,
     stored: int,
     tell: Callable[[str], None] = _tell,
-) -> Iterator[Report]:
+) -> Iterator[ChunkResult]:
     """Execute the jobs of a queue and show the progress; yield the report of each chunk.
 
     Args:
@@ -315,7 +315,7 @@ def _count(checked: Checked, left: int, stored: int) -> str:
 @contextlib.contextmanager
 def _workers(
     queue: Queue, jobs: int, engine: Engine, expected: Estimate, tell: Callable[[str], None]
-) -> Iterator[Iterator[Report]]:
+) -> Iterator[Iterator[ChunkResult]]:
     """Start the workers of a queue, given its expected CPU time; yield an iterator over the reports of its chunks."""
     if engine.address is not None:
         with (
@@ -362,7 +362,7 @@ def _seconds_in_process(rules: Rules, workers: int, expected: Estimate) -> float
     return 0.0 if alone or expected.seconds > pays_from else pays_from
 
 
-def _begun_in_process(queue: Queue, workers: int, seconds: float) -> Generator[Report]:
+def _begun_in_process(queue: Queue, workers: int, seconds: float) -> Generator[ChunkResult]:
     """Execute jobs in this process for a time, in s, and the rest on workers; yield the report of each chunk."""
     end = time.monotonic() + seconds
     yield from in_process(queue, lambda: time.monotonic() < end)

@@ -33,7 +33,7 @@ _one_at_a_time = threading.Lock()  # in case a worker has several threads
 
 
 @dataclass(frozen=True)
-class Part:
+class SeedPart:
     """Runs whose configs differ only in the seed, or a single run or calibration.
 
     Attributes:
@@ -57,7 +57,7 @@ class Chunk:
 
     name: str
     rules: Rules
-    parts: Sequence[Part]
+    parts: Sequence[SeedPart]
 
     @property
     def names(self) -> list[str]:
@@ -71,7 +71,7 @@ class Chunk:
 
 
 @dataclass(frozen=True)
-class Report:
+class ChunkResult:
     """Result of a chunk.
 
     Attributes:
@@ -82,7 +82,7 @@ class Report:
         worker: Address of the worker that executed the chunk; empty for the process of the command.
     """
 
-    outcomes: Sequence[store.Outcome]
+    outcomes: Sequence[store.RunOutcome]
     trouble: str
     seconds: float
     host: str = ""
@@ -94,7 +94,9 @@ def dask_setup(_worker: object) -> None:
     signal.signal(signal.SIGINT, signal.SIG_IGN)
 
 
-def work(chunk: Chunk, tell: Callable[[int], None] | None = None, go_on: Callable[[], bool] = lambda: True) -> Report:
+def work(
+    chunk: Chunk, tell: Callable[[int], None] | None = None, go_on: Callable[[], bool] = lambda: True
+) -> ChunkResult:
     """Execute the jobs of a chunk; a chunk that was interrupted before continues.
 
     Args:
@@ -104,7 +106,7 @@ def work(chunk: Chunk, tell: Callable[[int], None] | None = None, go_on: Callabl
     """
     quiet_environment()
     start = time.perf_counter()
-    outcomes: list[store.Outcome] = []
+    outcomes: list[store.RunOutcome] = []
     trouble = ""
     with _one_at_a_time, report_ticks(tell), ThreadPoolExecutor(1) as disk:
         try:
@@ -116,10 +118,10 @@ def work(chunk: Chunk, tell: Callable[[int], None] | None = None, go_on: Callabl
             _make_all(chunk, disk, outcomes, go_on)
         except RunnerError as error:
             trouble = str(error)
-    return Report(outcomes, trouble, time.perf_counter() - start)
+    return ChunkResult(outcomes, trouble, time.perf_counter() - start)
 
 
-def _make_all(chunk: Chunk, disk: Executor, outcomes: list[store.Outcome], go_on: Callable[[], bool]) -> None:
+def _make_all(chunk: Chunk, disk: Executor, outcomes: list[store.RunOutcome], go_on: Callable[[], bool]) -> None:
     """Execute the jobs of a chunk: first those that can share a batch, then the others one by one."""
     rules, known = chunk.rules, find_stored(chunk)
     outcomes += known.values()
@@ -136,7 +138,7 @@ def _make_all(chunk: Chunk, disk: Executor, outcomes: list[store.Outcome], go_on
     writer.close()
 
 
-def find_stored(chunk: Chunk) -> dict[str, store.Outcome]:
+def find_stored(chunk: Chunk) -> dict[str, store.RunOutcome]:
     """Return the outcomes of the jobs of a chunk that are in its shard or count as done.
 
     Damaged results are left out.
@@ -155,16 +157,16 @@ def find_stored(chunk: Chunk) -> dict[str, store.Outcome]:
     return found
 
 
-def find_calibrated(outputs: Path, name: str) -> store.Outcome | None:
+def find_calibrated(outputs: Path, name: str) -> store.RunOutcome | None:
     """Return a successful outcome if a calibration is stored, otherwise None.
 
     Raises:
         DamagedError: if the calibration is damaged.
     """
-    return None if store.find_calibration(outputs, name) is None else store.Outcome(name, "", False)
+    return None if store.find_calibration(outputs, name) is None else store.RunOutcome(name, "", False)
 
 
-def _make(name: str, composed: Composed, rules: Rules) -> RunResult | store.Run | store.Outcome:
+def _make(name: str, composed: Composed, rules: Rules) -> RunResult | store.Run | store.RunOutcome:
     """Make one job; return a run as stored, or the outcome of a stored calibration."""
     job = _checked(name, composed)
     result: Any
@@ -174,7 +176,7 @@ def _make(name: str, composed: Composed, rules: Rules) -> RunResult | store.Run 
     if isinstance(result, RunResult):
         return without_trace(name, result, rules)
     job.write(rules.outputs, result)
-    return store.Outcome(name, "", False)
+    return store.RunOutcome(name, "", False)
 
 
 def _checked_runs(parts: Sequence[Sequence[tuple[str, Composed]]]) -> Iterator[tuple[str, RunConfig]]:
@@ -220,21 +222,23 @@ def _try(make: Callable[[], Made], rules: Rules) -> tuple[Made | None, str, str]
     return None, *found
 
 
-def give_up(chunk: Chunk, reason: str) -> Report:
+def give_up(chunk: Chunk, reason: str) -> ChunkResult:
     """Store the single job of a chunk as aborted because it crashes every worker."""
     (composed,), rules = [composed for _, composed in chunk.jobs], chunk.rules
     made = cut_short(check_job(composed), rules, reason)
-    if isinstance(made, store.Outcome):
-        return Report([made], "", 0.0)
+    if isinstance(made, store.RunOutcome):
+        return ChunkResult([made], "", 0.0)
     write_shard(rules.outputs, chunk.name, [made])
-    return Report([outcome(made)], "", 0.0)
+    return ChunkResult([outcome(made)], "", 0.0)
 
 
-def cut_short(job: RunJob | CalibrationJob, rules: Rules, reason: str, details: str = "") -> store.Run | store.Outcome:
+def cut_short(
+    job: RunJob | CalibrationJob, rules: Rules, reason: str, details: str = ""
+) -> store.Run | store.RunOutcome:
     """Log a job that ended for another reason than its physics; return a run as stored, or an outcome."""
     if isinstance(job, CalibrationJob):
         write_log(job.name, f"{reason}\n{details}", rules)
-        return store.Outcome(job.name, f"cut short: {reason}", cut_short=True)
+        return store.RunOutcome(job.name, f"cut short: {reason}", cut_short=True)
     config = job.config
     record = cut_short_record(reason, config.settings.repetitions, job_provenance(config))
     run = store.Run(rules.outputs / "runs" / job.name, config.resolved, record, config.arm.urdf)

@@ -67,7 +67,7 @@ class Rules:
         """Return the file with the details of a failed run: its log, or the record in its folder."""
         return log if (log := self.log(name)).exists() else self.outputs / "runs" / name / "metrics.json"
 
-    def accepts(self, end: store.Outcome | None) -> bool:
+    def accepts(self, end: store.RunOutcome | None) -> bool:
         """Return True if a stored run counts as done."""
         return end is not None and self.accepts_rank(end.rank)
 
@@ -91,12 +91,12 @@ class ResultWriter:
         outcomes: List that receives the outcome of each run; a run with a trace is stored first.
     """
 
-    def __init__(self, name: str, rules: Rules, disk: Executor, outcomes: list[store.Outcome]) -> None:
+    def __init__(self, name: str, rules: Rules, disk: Executor, outcomes: list[store.RunOutcome]) -> None:
         self._name, self._rules, self._disk, self._outcomes = name, rules, disk, outcomes
         self._written: Future[store.Run] | None = None
         self._traceless: list[store.Run | ShardRow] = []
 
-    def put(self, name: str, made: RunResult | store.Run | store.Outcome) -> bool:
+    def put(self, name: str, made: RunResult | store.Run | store.RunOutcome) -> bool:
         """Add a run, or the outcome of a stored calibration; return True if it failed."""
         if not isinstance(made, RunResult):
             self._traceless += [made] if isinstance(made, store.Run) else []

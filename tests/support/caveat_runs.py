@@ -5,7 +5,7 @@ from dataclasses import replace
 import numpy as np
 
 from runner.caveats.monitor import Watch
-from runner.caveats.setting import Signals, setting_of
+from runner.caveats.setting import RunSignals, setting_of
 
 
 def signals(q=None, tau=None, tip=None, desired=None, limits=(10.0, 10.0, 10.0), dq=None):
@@ -16,13 +16,13 @@ def signals(q=None, tau=None, tip=None, desired=None, limits=(10.0, 10.0, 10.0),
     q, tau = np.zeros((rows, 3)) if q is None else q, np.zeros((rows - 1, 3)) if tau is None else tau
     tip, dq = np.zeros((rows, 3)) if tip is None else tip, np.zeros((rows, 3)) if dq is None else dq
     saturation = (np.abs(tau) >= np.array(limits)).mean(axis=0)
-    return Signals(q, dq, tau, tip, tip if desired is None else desired, saturation, np.array(limits))
+    return RunSignals(q, dq, tau, tip, tip if desired is None else desired, saturation, np.array(limits))
 
 
 def stacked(*runs):
     """Several runs as one, with an axis in front."""
     names = ("q", "dq", "tau", "tip", "desired", "saturation", "limits")
-    return Signals(*(np.array([getattr(run, name) for run in runs]) for name in names))
+    return RunSignals(*(np.array([getattr(run, name) for run in runs]) for name in names))
 
 
 def found(config, *runs, **changed):

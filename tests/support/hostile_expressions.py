@@ -11,7 +11,7 @@ from random import Random
 from typing import Any
 
 from runner.base.errors import RunnerError
-from runner.papers.expressions.evaluator import Budget, Scope
+from runner.papers.expressions.evaluator import OperationBudget, Scope
 
 _WATCHED = ("open", "exec", "compile", "import", "os.", "subprocess.", "socket.", "ctypes.", "shutil.", "marshal.")
 _SYNTAX = "<unknown>"  # the file that Python names where a string is only made a syntax tree
@@ -221,7 +221,7 @@ def attempt(text: str) -> Ended:
     faults: list[str] = []
     try:
         with _watched(faults):
-            value = SCOPE.evaluate(text, Budget())
+            value = SCOPE.evaluate(text, OperationBudget())
     except RunnerError as error:
         if len(str(error)) > _REFUSAL:
             faults.append(f"a message of {len(str(error))} characters")
@@ -255,7 +255,7 @@ def _add_hook() -> None:
     """Add a hook that reports every action of Python; a hook cannot be removed again."""
     for text in ("totl", "\ud800"):
         with suppress(RunnerError):
-            SCOPE.evaluate(text, Budget())  # imports what only messages need
+            SCOPE.evaluate(text, OperationBudget())  # imports what only messages need
     sys.addaudithook(_hook)
 
 

@@ -5,7 +5,6 @@ import numpy as np
 from runner.papers.reporting.claims import Claim, ClaimResult, Verdicts
 from runner.papers.reporting.equation import Equation, EquationForm, Equations
 from runner.reporting.document import (
-    Body,
     Code,
     Curves,
     Document,
@@ -18,6 +17,7 @@ from runner.reporting.document import (
     Panel,
     Picture,
     Playback,
+    PlaybackBody,
     Provenance,
     RunList,
     Section,
@@ -53,7 +53,7 @@ def playback(count: int = 60, **changes: object) -> Playback:
     zero = np.zeros(count)
     turned = np.stack([np.cos(angle / 2), zero, -np.sin(angle / 2), zero], axis=1)
     tip = np.stack([np.cos(angle), zero, np.sin(angle)], axis=1)
-    body = Body("link", [((0, 0, 0), (1, 0, 0), 0.05)], [((1, 0, 0), 0.07)], np.zeros((count, 3)), turned)
+    body = PlaybackBody("link", [((0, 0, 0), (1, 0, 0), 0.05)], [((1, 0, 0), 0.07)], np.zeros((count, 3)), turned)
     return Playback(**({"caption": "It moves.", "times": times, "bodies": [body], "path": tip, "desired": tip + 0.01,
                         "still": SVG} | changes))  # fmt: skip
 

@@ -3,7 +3,7 @@
 from collections.abc import Iterator, Mapping
 from dataclasses import replace
 
-from runner.reporting.document import Block, Curves, Notice, Section, Table, Text
+from runner.reporting.document import Curves, Notice, ReportBlock, Section, Table, Text
 from runner.store import Run
 
 FAILURE = {"reason": "diverged: for this test", "time": 0.01, "joint": "q1", "repetition": 0}
@@ -21,7 +21,7 @@ def every_third(runs: Mapping[str, Run], offset: int) -> dict[str, Run]:
     return {name: failed(run) if i % 3 == offset else run for i, (name, run) in enumerate(runs.items())}
 
 
-def blocks(section: Section) -> Iterator[Block]:
+def blocks(section: Section) -> Iterator[ReportBlock]:
     yield from section.blocks
     for below in section.sections:
         yield from blocks(below)

@@ -12,7 +12,7 @@ from runner.assembly.validation import validate
 from runner.base.arrays import FloatArray
 from runner.config.compose.compose import compose
 from runner.reporting.charts.canvas import GREY, INK, Camera, circle, drawing, scene, write
-from runner.reporting.document import Body
+from runner.reporting.document import PlaybackBody
 from runner.reporting.playback import playback_bodies
 
 ARMS = ("panda", "fr3", "iiwa14", "gen3", "sawyer", "ur5e", "ur10e", "xarm7", "z1", "so101")
@@ -54,7 +54,7 @@ def _sheet() -> Figure:
     return figure
 
 
-def _faces(body: Body, camera: Camera) -> Iterator[Face]:
+def _faces(body: PlaybackBody, camera: Camera) -> Iterator[Face]:
     """Yield what is seen of a body: nearness to the viewer, outline in the picture, shape (N, 2), and colour."""
     w, x, y, z = body.rotations[0]
     turn, shift = pin.Quaternion(w, x, y, z).matrix(), body.positions[0]

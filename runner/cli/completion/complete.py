@@ -18,7 +18,7 @@ from argcomplete.shell_integration import shellcode
 
 from runner.base.errors import RunnerError, nearest
 from runner.cli import commands
-from runner.cli.arguments import Names, Parser, Stored
+from runner.cli.arguments import NameList, Parser, StoredFolder
 from runner.cli.completion.overrides import Typed, metric_names, override_words
 from runner.cli.parser import build_parser
 from runner.store.kinds import KINDS, WORD, Kind
@@ -111,9 +111,9 @@ def _values(prefix: str, action: argparse.Action, parser: Parser, parsed_args: a
             yield from commands.names()
     elif action.metavar == "GROUP=MODULE":
         yield from _plugin_words(prefix)
-    elif isinstance(action.type, Stored):
+    elif isinstance(action.type, StoredFolder):
         yield from _stored_folders(prefix, action.type.kinds)
-    elif isinstance(action.type, Names) and action.type.allowed:
+    elif isinstance(action.type, NameList) and action.type.allowed:
         yield from _listed(prefix, action.type.allowed)
     else:
         for name, words in _NAMED.items():
@@ -121,7 +121,7 @@ def _values(prefix: str, action: argparse.Action, parser: Parser, parsed_args: a
                 yield from _listed(prefix, words(parser))
     if hasattr(action, "completer"):  # argcomplete's name of an argument's words
         yield from _listed(prefix, action.completer(prefix=prefix, action=action))
-    if hasattr(action, "completer") or (action.metavar in _FILES and not isinstance(action.type, Stored)):
+    if hasattr(action, "completer") or (action.metavar in _FILES and not isinstance(action.type, StoredFolder)):
         yield from _files(prefix, folders_only=action.metavar not in ("FILE", "URDF", "PATH"))
 
 

@@ -8,7 +8,7 @@ from pydantic import Field
 from runner.base import progress
 from runner.base.data_file import read_data
 from runner.base.sanitize import csv_text
-from runner.papers.audit.entry import Form, Part, entries, parts
+from runner.papers.audit.entry import Form, SourceFile, entries, parts
 from runner.papers.audit.sources import Where, source_of, sources
 from runner.papers.audit.verdict import SAMPLES, VERDICTS, AuditError, Check, CheckedEquation, Verdict
 from runner.schema.model import StrictModel
@@ -40,7 +40,7 @@ def audit_all(samples: int = SAMPLES) -> dict[str, list[CheckedEquation]]:
     return checked
 
 
-def _checked(found: Iterable[Part], samples: int) -> Iterator[CheckedEquation]:
+def _checked(found: Iterable[SourceFile], samples: int) -> Iterator[CheckedEquation]:
     faults: dict[str, str] = {}  # by cause: one of a whole file is reported once
     for part in found:
         check = Check(part, samples)

@@ -22,7 +22,7 @@ from runner.base.arrays import FloatArray
 from runner.base.data_file import read_data
 from runner.base.errors import RunnerError, nearest
 from runner.papers.audit.sources import Where, consequence_of, source_of
-from runner.papers.expressions.evaluator import Budget, Scope
+from runner.papers.expressions.evaluator import OperationBudget, Scope
 from runner.papers.expressions.grammar import ExpressionError
 from runner.papers.expressions.insertions import fill
 from runner.schema.model import StrictModel
@@ -73,7 +73,7 @@ def simulate_consequence(where: Where, name: str) -> tuple[Words, Consequence]:
     if own not in words:
         raise RunnerError(f"{path}: {own}: no words{nearest(own, words)}")
     try:
-        text = fill(words[own].text, Scope({}, {**told, **run.numbers}), Budget())
+        text = fill(words[own].text, Scope({}, {**told, **run.numbers}), OperationBudget())
     except ExpressionError as error:
         raise RunnerError(f"{path}: {own}: {error.reason}") from error
     return words[own].model_copy(update={"text": text}), run

@@ -56,7 +56,7 @@ from runner.base.arrays import FloatArray
 from runner.base.data_file import read_data
 from runner.base.errors import RunnerError
 from runner.base.sanitize import quoted
-from runner.papers.audit.evaluation import Numbered, Values
+from runner.papers.audit.evaluation import Numbered, SampleValues
 from runner.papers.audit.sources import Source, Where, derivation_of, source_of
 from runner.papers.expressions.grammar import ExpressionError
 from runner.papers.expressions.parser import parse
@@ -199,7 +199,7 @@ class Entry(StrictModel):
     indices: dict[str, list[int]] = Field(default_factory=dict)
 
     @property
-    def right(self) -> Form:
+    def true_form(self) -> Form:
         """The form that is meant to be right."""
         return self.corrected or self.emendation or self.printed
 
@@ -247,7 +247,7 @@ class Content(StrictModel):
         return self
 
 
-class Part(Content):
+class SourceFile(Content):
     """A data file of a source.
 
     Attributes:
@@ -259,7 +259,7 @@ class Part(Content):
     path: Path
 
 
-def parts(where: Where) -> tuple[Part, ...]:
+def parts(where: Where) -> tuple[SourceFile, ...]:
     """Return the data files of a source, in the order of their names.
 
     Raises:
@@ -270,20 +270,22 @@ def parts(where: Where) -> tuple[Part, ...]:
     return tuple(_read(source, path, path.stat().st_mtime_ns) for path in found)
 
 
-def entries(where: Where) -> Iterator[tuple[Part, Entry]]:
+def entries(where: Where) -> Iterator[tuple[SourceFile, Entry]]:
     """Yield each equation of a source with the file it belongs to."""
     for part in parts(where):
         for entry in part.entries:
             yield part, entry
 
 
-def right_elements(part: Part) -> dict[str, Numbered]:
+def right_elements(part: SourceFile) -> dict[str, Numbered]:
     """Return the right sides of all equations of a file in their right form, by name."""
-    found = [each for entry in part.entries if entry.right.readable for each in entry.equations(entry.right)]
+    found = [each for entry in part.entries if entry.true_form.readable for each in entry.equations(entry.true_form)]
     return {at_places(name, right.numbers): right for name, right in found}
 
 
-def form_values(entry: Entry, form: Form, symbols: Mapping[str, FloatArray], others: Mapping[str, Numbered]) -> Values:
+def form_values(
+    entry: Entry, form: Form, symbols: Mapping[str, FloatArray], others: Mapping[str, Numbered]
+) -> SampleValues:
     """Return the values of a form's equations by name.
 
     Args:
@@ -293,15 +295,15 @@ def form_values(entry: Entry, form: Form, symbols: Mapping[str, FloatArray], oth
         others: The other equations of its file in their right form; see `right_elements`.
     """
     own = {at_places(name, right.numbers): right for name, right in entry.equations(form)}
-    return Values({name: values for name, values in symbols.items() if name not in own}, {**others, **own})
+    return SampleValues({name: values for name, values in symbols.items() if name not in own}, {**others, **own})
 
 
-def values_at(where: Where, name: str, symbols: Mapping[str, FloatArray], *, corrected: bool = False) -> Values:
+def values_at(where: Where, name: str, symbols: Mapping[str, FloatArray], *, corrected: bool = False) -> SampleValues:
     """Return the same for the equation of a source with this id, as printed or corrected."""
     part, entry = next((part, entry) for part, entry in entries(where) if entry.id == name)
-    return form_values(entry, entry.right if corrected else entry.printed, symbols, right_elements(part))
+    return form_values(entry, entry.true_form if corrected else entry.printed, symbols, right_elements(part))
 
 
 @lru_cache(maxsize=64)
-def _read(source: Source, path: Path, _changed: int) -> Part:
-    return Part(source=source, path=path, **dict(read_data(path, Content)))
+def _read(source: Source, path: Path, _changed: int) -> SourceFile:
+    return SourceFile(source=source, path=path, **dict(read_data(path, Content)))

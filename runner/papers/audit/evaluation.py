@@ -14,10 +14,10 @@ from scipy.spatial.transform import Rotation
 from runner.base.arrays import FloatArray
 from runner.base.errors import RunnerError, nearest
 from runner.papers.audit.derivations import along, rotation, translation
-from runner.papers.expressions.evaluator import Budget
+from runner.papers.expressions.evaluator import OperationBudget
 from runner.papers.expressions.grammar import ExpressionError
-from runner.papers.expressions.parser import FUNCTIONS, Expression, parse
-from runner.papers.expressions.tree import Call, Name, Node, Number, Power, Product, Sum, at_places, parts, start
+from runner.papers.expressions.parser import FUNCTIONS, ParsedExpression, parse
+from runner.papers.expressions.tree import Call, Name, Node, Power, Product, Sum, WrittenNumber, at_places, parts, start
 from runner.papers.expressions.tree import symbols as symbols_in
 
 _OPERATIONS = 10_000
@@ -33,7 +33,7 @@ class Numbered(NamedTuple):
     numbers: Mapping[str, int] = _NONE
 
 
-class Values(Mapping[str, FloatArray]):
+class SampleValues(Mapping[str, FloatArray]):
     """Values of symbols at the samples, and those of expressions, each evaluated when it is first used.
 
     Args:
@@ -85,7 +85,7 @@ class Values(Mapping[str, FloatArray]):
 
 
 def evaluate(
-    expression: Expression, symbols: Mapping[str, FloatArray], numbers: Mapping[str, int] = _NONE
+    expression: ParsedExpression, symbols: Mapping[str, FloatArray], numbers: Mapping[str, int] = _NONE
 ) -> FloatArray:
     """Return the values of an expression at all samples; those of its last side, if it has several.
 
@@ -106,10 +106,10 @@ def evaluate(
 
 
 def evaluate_sides(
-    expression: Expression, symbols: Mapping[str, FloatArray], numbers: Mapping[str, int] = _NONE
+    expression: ParsedExpression, symbols: Mapping[str, FloatArray], numbers: Mapping[str, int] = _NONE
 ) -> list[FloatArray]:
     """Return the same for each side of an equation such as `a = b`."""
-    root, values = expression.root, symbols if isinstance(symbols, Values) else Values(symbols)
+    root, values = expression.root, symbols if isinstance(symbols, SampleValues) else SampleValues(symbols)
     sides = root.arguments if isinstance(root, Call) and root.function == "=" else (root,)
     evaluation = _Evaluation(expression, values)
     found = [evaluation.of(side, numbers) for side in sides]
@@ -122,7 +122,7 @@ def evaluate_all(texts: Mapping[str, str], symbols: Mapping[str, FloatArray]) ->
     Raises:
         RunnerError: If one cannot be read or evaluated, or uses itself; names it.
     """
-    values = Values(symbols, {name: Numbered(text) for name, text in texts.items()})
+    values = SampleValues(symbols, {name: Numbered(text) for name, text in texts.items()})
     return {name: values[name] for name in values}
 
 
@@ -134,17 +134,19 @@ class _Evaluation:
         values: Values of its names.
     """
 
-    def __init__(self, expression: Expression, values: Values) -> None:
-        self._expression, self._values, self._budget = expression, values, Budget(_OPERATIONS)
+    def __init__(self, expression: ParsedExpression, values: SampleValues) -> None:
+        self._expression, self._values, self._budget = expression, values, OperationBudget(_OPERATIONS)
 
     def of(self, node: Node, numbers: Mapping[str, int]) -> FloatArray:
         """Return the values of a part of the expression, where letters in square brackets stand for numbers."""
         match node:
-            case Number():
+            case WrittenNumber():
                 return np.array([float(node.text)])
             case Name():
                 return self._named(node, numbers)
-            case Call(function="sum", arguments=(Name(name=letter), Number(text=first), Number(text=last), term)):
+            case Call(
+                function="sum", arguments=(Name(name=letter), WrittenNumber(text=first), WrittenNumber(text=last), term)
+            ):
                 each = ({**numbers, letter: k} for k in range(int(first), int(last) + 1))
                 return reduce(partial(self._applied, term, np.add), (self.of(term, found) for found in each))
             case Call(function="matrix"):

@@ -29,7 +29,7 @@ class _Formulas(StrictModel):
 
 
 @dataclass(frozen=True)
-class Difference:
+class FormulaDifference:
     """One formula against the robot.
 
     Attributes:
@@ -51,7 +51,7 @@ class Difference:
     instead: str
 
 
-def compare(model: RobotModel, quantity: str, path: Path, samples: int) -> list[Difference]:
+def compare(model: RobotModel, quantity: str, path: Path, samples: int) -> list[FormulaDifference]:
     """Return the error of each formula of a file against the robot.
 
     Args:
@@ -82,7 +82,7 @@ def compare(model: RobotModel, quantity: str, path: Path, samples: int) -> list[
     return [_difference(name, values[name], true_values, q) for name in content.elements]
 
 
-def _difference(name: str, values: FloatArray, true_values: Elements, q: FloatArray) -> Difference:
+def _difference(name: str, values: FloatArray, true_values: Elements, q: FloatArray) -> FormulaDifference:
     error = np.abs(values - true_values[name])
     worst = int(error.argmax())
     instead = [
@@ -92,4 +92,4 @@ def _difference(name: str, values: FloatArray, true_values: Elements, q: FloatAr
         if error[worst] > _EQUAL and np.abs(sign * values - true).max() <= _EQUAL
     ]
     at = float(error[worst]), float(np.median(error)), q[worst], float(values[worst]), float(true_values[name][worst])
-    return Difference(name, *at, "".join(instead[:1]))
+    return FormulaDifference(name, *at, "".join(instead[:1]))

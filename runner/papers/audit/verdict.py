@@ -13,8 +13,8 @@ from runner.base.data_file import line_of
 from runner.base.errors import ConfigError, RunnerError, nearest
 from runner.base.quantities import quantity
 from runner.papers.audit.derivations import Derivations, Elements, Symbols
-from runner.papers.audit.entry import Entry, Form, Part, form_values, left_side, right_elements
-from runner.papers.audit.evaluation import Numbered, Values, evaluate, evaluate_all, size_of
+from runner.papers.audit.entry import Entry, Form, SourceFile, form_values, left_side, right_elements
+from runner.papers.audit.evaluation import Numbered, SampleValues, evaluate, evaluate_all, size_of
 from runner.papers.audit.model_derivations import AuditedArm, audited_arm, sample
 from runner.papers.audit.sources import Source, derivation_of
 from runner.papers.expressions.parser import parse
@@ -34,7 +34,7 @@ class AuditError(RunnerError):
 
 
 @dataclass(frozen=True)
-class Measured:
+class FormErrors:
     """Errors of a form against the true values.
 
     Attributes:
@@ -67,8 +67,8 @@ class CheckedEquation:
     source: str
     entry: Entry
     verdict: Verdict
-    measured: Measured | None
-    second: Measured | None
+    measured: FormErrors | None
+    second: FormErrors | None
     methods: tuple[str, str]
     letters: Letters = field(default_factory=dict)
 
@@ -81,7 +81,7 @@ class Check:
         samples: How many configurations are drawn.
     """
 
-    def __init__(self, part: Part, samples: int = SAMPLES) -> None:
+    def __init__(self, part: SourceFile, samples: int = SAMPLES) -> None:
         self._part, self._samples = part, samples
         self._found: dict[tuple[str, str, int], Elements] = {}
 
@@ -168,7 +168,7 @@ class Check:
         # Those that others use are intermediate steps.
         return [each for each in sides if at_places(each[0], each[1]) not in values.used]
 
-    def _compare(self, entry: Entry, sides: list[_Sides], true_values: Elements) -> Measured:
+    def _compare(self, entry: Entry, sides: list[_Sides], true_values: Elements) -> FormErrors:
         sizes: dict[str, FloatArray] = {}
         true_size = 0.0
         for name, numbers, values in sides:
@@ -181,7 +181,7 @@ class Check:
             sizes[placed] = np.maximum(size, sizes.get(placed, 0.0))
         worst = np.max(list(sizes.values()), axis=0)
         largest = {name: float(size.max()) for name, size in sizes.items()}
-        return Measured(float(worst.max()), float(np.median(worst)), largest, true_size)
+        return FormErrors(float(worst.max()), float(np.median(worst)), largest, true_size)
 
     def _left(self, name: str, numbers: Mapping[str, int], true_values: Elements) -> FloatArray:
         """Return the true values of a left side."""
@@ -190,7 +190,7 @@ class Check:
         node = left_side(name)
         if isinstance(node, Name) or not any(at_places(each, numbers) in true_values for each in symbols_in(node)):
             raise AuditError(f"no true value of {placed}; there is {', '.join(true_values)}")
-        return evaluate(parse(name), Values({**self.symbols, **true_values}, self._right), numbers)
+        return evaluate(parse(name), SampleValues({**self.symbols, **true_values}, self._right), numbers)
 
     def derivations(self, entry: Entry) -> Derivations:
         """Return the reference derivations of an entry."""
@@ -203,8 +203,8 @@ class Check:
 class _Both(NamedTuple):
     """A form against both derivations."""
 
-    first: Measured
-    second: Measured
+    first: FormErrors
+    second: FormErrors
 
     @property
     def worst(self) -> float:
@@ -213,7 +213,7 @@ class _Both(NamedTuple):
 
 def _filled(entry: Entry, printed: _Both | None) -> str:
     """Return the finding of an entry with the values that were measured."""
-    measured = printed.first if printed else Measured(0.0, 0.0, {})
+    measured = printed.first if printed else FormErrors(0.0, 0.0, {})
     values = {"largest": measured.largest, "typical": measured.typical, "size": measured.size}
 
     def value(match: re.Match[str]) -> str:

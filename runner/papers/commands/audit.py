@@ -17,7 +17,7 @@ from runner.cli.arguments import Parser
 from runner.reporting.table import Cell, Number, Table, numbers, terminal
 
 if TYPE_CHECKING:
-    from runner.papers.audit.own_formulas import Difference
+    from runner.papers.audit.own_formulas import FormulaDifference
 
 _MOST = 100_000
 
@@ -66,7 +66,7 @@ def run(options: Namespace) -> int:
     return 1 if differ else 0
 
 
-def _report(quantity: str, differences: "list[Difference]", tolerance: float) -> int:
+def _report(quantity: str, differences: "list[FormulaDifference]", tolerance: float) -> int:
     """Print the comparison of one file; return the number of formulas that differ."""
     wrong = [each for each in differences if each.largest > tolerance]
     print(f"{quantity}: {len(differences) - len(wrong)} of {len(differences)} formulas agree")

@@ -61,7 +61,7 @@ def check_law(name: str, profile: str, part: "UserPlugin", workers: int) -> Iter
     Raises:
         RunnerError: with all problems, if the controller does not fit.
     """
-    from runner.papers.study.estimate import told
+    from runner.papers.study.estimate import cost_line
     from runner.papers.study.fit import fit
     from runner.papers.study.study import load_study
 
@@ -79,4 +79,4 @@ def check_law(name: str, profile: str, part: "UserPlugin", workers: int) -> Iter
         )
     if not found.tuned:
         yield f"no ranges in {part.name}.ranges.yaml: the law is compared only with the values of its config"
-    yield told([part.name], found.amounts, workers)
+    yield cost_line([part.name], found.amounts, workers)

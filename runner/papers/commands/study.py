@@ -21,7 +21,7 @@ from runner.base.paths import studies_with
 from runner.base.sanitize import one_line
 from runner.cli.arguments import Parser
 from runner.config.compose.files import outputs_dir
-from runner.papers.study.changes import KINDS, ROUNDED, Change, Value, changes, read_conclusions
+from runner.papers.study.changes import KINDS, ROUNDED, Value, VersionChange, changes, read_conclusions
 
 if TYPE_CHECKING:
     from runner.papers.reporting.published_claims import PublishedClaim
@@ -107,7 +107,7 @@ def _diff(options: Namespace) -> int:
     return 0
 
 
-def _told(change: Change) -> str:
+def _told(change: VersionChange) -> str:
     moved = f" ({100.0 * change.size:.3g} %)" if change.size < float("inf") else ""
     return f"{change.kind}: {change.name}: {_value(change.old)} -> {_value(change.new)}{moved}"
 

@@ -4,7 +4,7 @@ from collections import Counter
 from collections.abc import Sequence
 from dataclasses import dataclass
 
-from runner.papers.expressions.tree import Call, Name, Node, Number, Power, Product, Sum, symbols
+from runner.papers.expressions.tree import Call, Name, Node, Power, Product, Sum, WrittenNumber, symbols
 
 _ALIKE = 0.3  # fraction of common symbols above which two terms are compared as a pair
 
@@ -12,7 +12,7 @@ _Part = tuple[bool, Node]
 
 
 @dataclass(frozen=True)
-class Difference:
+class ExpressionDifference:
     """Differences between two expressions.
 
     Attributes:
@@ -28,11 +28,11 @@ class Difference:
     symbols_alone: bool
 
 
-def difference(first: Node, second: Node) -> Difference:
+def difference(first: Node, second: Node) -> ExpressionDifference:
     """Return the differences between two expressions; the order of terms and factors does not matter."""
     found = _Finder()
     found.compare(first, second)
-    return Difference(
+    return ExpressionDifference(
         frozenset(found.first),
         frozenset(found.second),
         found.exchanged,
@@ -147,7 +147,7 @@ def _alike(first: Node, second: Node) -> float:
 def _shape(node: Node) -> tuple[object, ...]:
     """Return an expression without the positions of its parts."""
     match node:
-        case Number():
+        case WrittenNumber():
             return (float(node.text),)
         case Name():
             return (node.name,)

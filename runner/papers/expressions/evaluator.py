@@ -46,7 +46,7 @@ _COMPARISONS: Mapping[type[ast.AST], Callable[[Any, Any], Any]] = {
 }
 
 
-class Budget:
+class OperationBudget:
     """Remaining operations for the expressions of a file; unlike time, the count is the same on all machines.
 
     Args:
@@ -85,7 +85,7 @@ class Scope:
     handed: tuple[type, ...] = ()
     number: Callable[[Any], Any] = operator.pos
 
-    def evaluate(self, text: str, budget: Budget) -> Any:
+    def evaluate(self, text: str, budget: OperationBudget) -> Any:
         """Return the value of an expression.
 
         Args:
@@ -103,7 +103,7 @@ class Scope:
 class _Evaluation:
     """Evaluation of one expression; `of` returns the value of a node."""
 
-    def __init__(self, scope: Scope, text: str, budget: Budget) -> None:
+    def __init__(self, scope: Scope, text: str, budget: OperationBudget) -> None:
         self._scope, self._text, self._budget = scope, text, budget
         self._kinds = tuple(scope.members)
 

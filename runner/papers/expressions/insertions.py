@@ -4,7 +4,7 @@ import re
 from collections.abc import Callable, Iterator
 from typing import Any
 
-from runner.papers.expressions.evaluator import Budget, Scope
+from runner.papers.expressions.evaluator import OperationBudget, Scope
 from runner.papers.expressions.grammar import ExpressionError
 
 _PIECE = re.compile(r""""(?:\\.|[^"\\])*"|'(?:\\.|[^'\\])*'|[{}]|[^"'{}]+|.""", re.DOTALL)
@@ -24,7 +24,7 @@ def insertions(text: str) -> Iterator[tuple[int, int]]:
         yield start, stop
 
 
-def fill(text: str, scope: Scope, budget: Budget, shown: Callable[[Any], str] = str) -> str:
+def fill(text: str, scope: Scope, budget: OperationBudget, shown: Callable[[Any], str] = str) -> str:
     """Return a string in which the value of each expression replaces the expression.
 
     Args:

@@ -19,7 +19,7 @@ from typing import NoReturn
 from runner.base.errors import nearest
 from runner.papers.expressions import grammar
 from runner.papers.expressions.grammar import ExpressionError
-from runner.papers.expressions.tree import Call, Name, Node, Number, Power, Product, Sum
+from runner.papers.expressions.tree import Call, Name, Node, Power, Product, Sum, WrittenNumber
 
 FUNCTIONS = {
     **dict.fromkeys(("sin", "cos", "tan", "asin", "acos", "atan", "arcsin", "arccos", "arctan", "sqrt", "abs"), 1),
@@ -49,7 +49,7 @@ _PLACE = re.compile(r"[A-Za-z]|\d|[A-Za-z][+-]\d")
 
 
 @dataclass(frozen=True)
-class Expression:
+class ParsedExpression:
     """Parsed expression.
 
     Attributes:
@@ -62,7 +62,7 @@ class Expression:
 
 
 @lru_cache(maxsize=512)
-def parse(text: str) -> Expression:
+def parse(text: str) -> ParsedExpression:
     """Return the parsed expression.
 
     Raises:
@@ -76,7 +76,7 @@ def parse(text: str) -> Expression:
     python = "".join(letters).rstrip()
     places = [start + index for index, each in enumerate(letters) for _ in each.encode()] + [len(text)]
     try:
-        return Expression(text, _Reader(python, places).equation(grammar.parse(python)))
+        return ParsedExpression(text, _Reader(python, places).equation(grammar.parse(python)))
     except ExpressionError as error:
         place = places[len(python[: error.position - 1].encode())]
         raise ExpressionError(text, place, error.reason) from None
@@ -152,7 +152,7 @@ class _Reader:
             case ast.Constant() if number := _NUMBER.match(self._python, grammar.index_of(node, self._python)):
                 if float(number[0]) == float("inf"):
                     self._refuse(node, f"the number {number[0]} is too large")
-                return Number(number[0], index)
+                return WrittenNumber(number[0], index)
         return self._refuse(
             node, "is not arithmetic: numbers, names, + - * / @ ^ ( ) [ ] and functions with their arguments"
         )
@@ -187,5 +187,5 @@ def _items(node: ast.expr) -> list[ast.expr]:
 
 def _is_sum(arguments: Sequence[Node]) -> bool:
     letter, *ends = arguments[:3]
-    whole = all(isinstance(end, Number) and end.text.isdecimal() for end in ends)
+    whole = all(isinstance(end, WrittenNumber) and end.text.isdecimal() for end in ends)
     return whole and isinstance(letter, Name) and len(letter.name) == 1

@@ -6,7 +6,7 @@ from functools import partial
 
 
 @dataclass(frozen=True)
-class Number:
+class WrittenNumber:
     """Number as written."""
 
     text: str
@@ -55,13 +55,13 @@ class Sum:
     index: int
 
 
-Node = Number | Name | Call | Power | Product | Sum
+Node = WrittenNumber | Name | Call | Power | Product | Sum
 
 
 def parts(node: Node) -> Sequence[Node]:
     """Return the direct operands of an expression."""
     match node:
-        case Number() | Name():
+        case WrittenNumber() | Name():
             return ()
         case Call():
             return node.arguments
@@ -100,7 +100,7 @@ _FRAMES = ("matrix", "row", "=")
 def symbols(node: Node) -> Iterator[str]:
     """Yield the names, numbers and functions of an expression, each function before its arguments."""
     match node:
-        case Number():
+        case WrittenNumber():
             yield node.text
         case Name():
             yield node.name
@@ -138,7 +138,7 @@ def shorten_expression(node: Node, marked: Set[Node]) -> Node:
             return Call(node.function, tuple(map(inner, node.arguments)), node.index)
         case Power():
             return Power(_inner(node.base, marked), _inner(node.exponent, marked), node.index)
-        case Number() | Name():
+        case WrittenNumber() | Name():
             return node
 
 

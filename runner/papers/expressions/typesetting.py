@@ -4,7 +4,7 @@ import re
 from collections.abc import Mapping, Set
 from types import MappingProxyType
 
-from runner.papers.expressions.tree import Call, Name, Node, Number, Power, Product, Sum, parts
+from runner.papers.expressions.tree import Call, Name, Node, Power, Product, Sum, WrittenNumber, parts
 
 _NAME = re.compile(r"([^\W\d_]+)(?:_?(\d\w*)|_(\w+))?('*)")
 _GREEK = {
@@ -97,7 +97,7 @@ class _Typesetter:
 
     def _plain(self, node: Node) -> str:
         match node:
-            case Number():
+            case WrittenNumber():
                 return node.text
             case Name() if node.name in self._letters:
                 return self._letters[node.name]
@@ -133,7 +133,7 @@ class _Typesetter:
                 return f"{_FUNCTIONS.get(node.function, node.function)} {_bracketed(arguments)}"
             case Power():
                 base = self.written(node.base)
-                grouped = not isinstance(node.base, Name | Number) and not base.startswith("sqrt")
+                grouped = not isinstance(node.base, Name | WrittenNumber) and not base.startswith("sqrt")
                 return f"{f'({base})' if grouped else base}^({self.written(node.exponent)})"
             case Product():
                 return self._product(node)
@@ -152,7 +152,7 @@ class _Typesetter:
 
     def _base(self, node: Node) -> str:
         text = self.written(node)
-        return text if isinstance(node, Name | Number) else f"({text})"
+        return text if isinstance(node, Name | WrittenNumber) else f"({text})"
 
     def _product(self, node: Product) -> str:
         (_, first), (over, second) = node.factors[0], node.factors[-1]
@@ -162,7 +162,7 @@ class _Typesetter:
                 return f"({above}) / ({below})"
         text = self._factor(first)
         for over, factor in node.factors[1:]:
-            sign = " \\/ " if over else " dot " if isinstance(factor, Number) else " "
+            sign = " \\/ " if over else " dot " if isinstance(factor, WrittenNumber) else " "
             grouped = over and isinstance(factor, Product)
             text += sign + (_bracketed(self.written(factor)) if grouped else self._factor(factor))
         return text

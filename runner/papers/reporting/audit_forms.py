@@ -9,7 +9,7 @@ from types import MappingProxyType
 
 from runner.papers.audit.entry import Entry, Form, left_side
 from runner.papers.audit.verdict import CheckedEquation
-from runner.papers.expressions.difference import Difference, difference
+from runner.papers.expressions.difference import ExpressionDifference, difference
 from runner.papers.expressions.grammar import ExpressionError
 from runner.papers.expressions.parser import parse
 from runner.papers.expressions.tree import ELLIPSIS, Call, Name, Node, Sum, holds, parts, shorten_expression, size
@@ -44,7 +44,7 @@ class RightElements:
         for each in checked:
             entry = each.entry
             if each.verdict not in ("unreadable", "definition"):
-                texts = {name: text for name, text in entry.right.elements.items() if _PLACED.fullmatch(name)}
+                texts = {name: text for name, text in entry.true_form.elements.items() if _PLACED.fullmatch(name)}
                 self._right |= {name: parse(text).root for name, text in texts.items()}
 
     def misplaced(self, entry: Entry, elements: Mapping[str, Node]) -> str:
@@ -159,7 +159,7 @@ def _is_matrix(node: Node) -> bool:
     return isinstance(node, Call) and node.function == "matrix"
 
 
-def _has_fault(one: Node, other: Node, found: Difference) -> bool:
+def _has_fault(one: Node, other: Node, found: ExpressionDifference) -> bool:
     """Return True if two expressions are the same except for faults that can be pointed at."""
     shares = [sum(map(size, marked)) / size(node) for node, marked in ((one, found.first), (other, found.second))]
     return max(shares) < 1 and min(shares) <= _OTHER and min(len(found.first), len(found.second)) <= _FAULTS
@@ -194,7 +194,7 @@ def _shown(
     whole = linear(_text(form))
     if like:
         return EquationForm(label, note=note, whole=whole)
-    shown = _short(
+    shown = _readable_part(
         [(left, shorten_expression(part, marks)) for left, part in groups if holds(part, marks)] or _begun(groups)
     )
     return EquationForm(label, _lines(shown, marks, letters), note=note, whole=whole)
@@ -218,7 +218,7 @@ def _begun(groups: _Shown) -> _Shown:
     ]
 
 
-def _short(groups: _Shown) -> _Shown:
+def _readable_part(groups: _Shown) -> _Shown:
     """Return the shown part of a form: as many of its equations as can be read, or none."""
     sizes = accumulate(size(part) for _, part in groups)
     return [group for group, total in zip(groups, sizes, strict=True) if total <= 2 * _SYMBOLS]
@@ -260,7 +260,7 @@ def _matrix(rows: Iterable[Iterable[Node]]) -> Node:
     return Call("matrix", tuple(Call("row", tuple(row), 0) for row in rows), 0)
 
 
-def _exchanged(found: Difference) -> str:
+def _exchanged(found: ExpressionDifference) -> str:
     told = [
         f"${_typeset_name(ours)}$ for ${_typeset_name(theirs)}${f' ({count} times)' if count > 1 else ''}"
         for (ours, theirs), count in found.exchanged.items()

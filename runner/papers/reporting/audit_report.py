@@ -17,7 +17,6 @@ from runner.papers.audit.verdict import SAMPLES, VERDICTS, CheckedEquation
 from runner.papers.reporting.audit_forms import RightElements, forms_of
 from runner.papers.reporting.equation import Equation, Equations
 from runner.reporting.document import (
-    Block,
     Curves,
     Document,
     Items,
@@ -25,6 +24,7 @@ from runner.reporting.document import (
     Origin,
     Panel,
     Provenance,
+    ReportBlock,
     Section,
     Series,
     Table,
@@ -132,7 +132,7 @@ def _derivations(checked: Mapping[str, Sequence[CheckedEquation]]) -> Table:
 
 
 def _source(source: str, checked: Sequence[CheckedEquation]) -> Section:
-    blocks: list[Block] = [
+    blocks: list[ReportBlock] = [
         Notice("finding", "What is wrong, and why", inventory(source).found),
         Equations(f"Equations of the {source} source.", rows(checked), source=source, data=DATA),
     ]

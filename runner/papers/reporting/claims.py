@@ -6,9 +6,9 @@ from typing import ClassVar
 
 from runner.papers.reporting.equation import EquationVerdict
 from runner.papers.reporting.published_claims import Verdict
-from runner.reporting.block import Block
+from runner.reporting.block import ReportBlock
 from runner.reporting.table import Origin
-from runner.reporting.verdicts import Square, Tally
+from runner.reporting.verdicts import Tally, VerdictSquare
 
 
 @dataclass(frozen=True)
@@ -59,7 +59,7 @@ class Claim:
 
 
 @dataclass(frozen=True)
-class Verdicts(Block):
+class Verdicts(ReportBlock):
     """Claims of a source, each with its verdicts and their reason.
 
     Attributes:
@@ -104,13 +104,13 @@ class Verdicts(Block):
             yield Tally.of(way, squares, [square.verdict for square in squares])
 
 
-def _square(claim: Claim, result: ClaimResult) -> Square:
+def _square(claim: Claim, result: ClaimResult) -> VerdictSquare:
     hangs = f"; depends on {', '.join(result.hangs)}" if result.hangs else ""
     words = f"Claim {claim.number}: {result.verdict}{hangs}"
-    return Square(claim.number + "*" * bool(result.hangs), result.verdict, claim.place_name, words)
+    return VerdictSquare(claim.number + "*" * bool(result.hangs), result.verdict, claim.place_name, words)
 
 
-def find_conditional_claims(blocks: Iterable[Block]) -> str:
+def find_conditional_claims(blocks: Iterable[ReportBlock]) -> str:
     """Return the claims whose verdict depends on more than they say, and the reasons; empty without one."""
     conditions: dict[str, list[str]] = {}
     for block in blocks:

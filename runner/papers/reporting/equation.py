@@ -5,10 +5,10 @@ from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass, field, replace
 from typing import ClassVar, Literal
 
-from runner.reporting.block import Block
+from runner.reporting.block import ReportBlock
 from runner.reporting.markup import literal
 from runner.reporting.table import Origin
-from runner.reporting.verdicts import Square, Tally
+from runner.reporting.verdicts import Tally, VerdictSquare
 
 EquationVerdict = Literal["correct", "correct after emendation", "wrong as printed", "unreadable", "definition"]
 
@@ -72,7 +72,7 @@ class Equation:
 
 
 @dataclass(frozen=True)
-class Equations(Block):
+class Equations(ReportBlock):
     """Audited equations, those that are wrong first; the HTML page can be searched, and folds those that are right.
 
     Attributes:
@@ -129,7 +129,7 @@ class Equations(Block):
     def tallies(self) -> Iterable[Tally]:
         """Yield the count of each verdict."""
         squares = [
-            Square(str(len(rows)), verdict, place, f"{len(rows)} {verdict}")
+            VerdictSquare(str(len(rows)), verdict, place, f"{len(rows)} {verdict}")
             for verdict, place, rows in self._with_verdicts((*SHOWN, *FOLDED))
         ]
         yield Tally.of(self.source or "equations", squares, [row.verdict for row in self.rows])

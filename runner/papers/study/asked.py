@@ -15,7 +15,7 @@ from runner.reporting.document import Document
 
 
 @dataclass(frozen=True)
-class Asked:
+class AskedFinding:
     """A finding or the verdict on a claim, with its conditions.
 
     Attributes:
@@ -35,7 +35,7 @@ class Asked:
     wider: bool = False
 
 
-def list_asked(chapters: Chapters, document: Document, chosen: str = "") -> list[Asked]:
+def list_asked(chapters: Chapters, document: Document, chosen: str = "") -> list[AskedFinding]:
     """Return the findings and verdicts of a study; of a section, or with words in their title.
 
     Chosen findings and answers are asked under equivalent choices and conditions, too, if they compare runs.
@@ -56,7 +56,7 @@ def list_asked(chapters: Chapters, document: Document, chosen: str = "") -> list
     return _choose(every, chosen)
 
 
-def _list_findings(chapters: Chapters, document: Document, all_wider: bool) -> Iterator[Asked]:
+def _list_findings(chapters: Chapters, document: Document, all_wider: bool) -> Iterator[AskedFinding]:
     """Yield the findings of all chapters in Markdown whose conditions read runs."""
     numbers = {id(found): number for number, found in findings(document)}
     for file in chapters.study.manifest.files():
@@ -74,14 +74,14 @@ def _list_findings(chapters: Chapters, document: Document, all_wider: bool) -> I
                 ratio = len(runs) > 1 and any(len(each.values) > 1 for each in box.finding.conditions)
                 ask = partial(_ask_box, stem, box)
                 number = numbers[id(box.finding)]
-                yield Asked(number, box.finding.claim, ask, runs, box.about, wider and ratio)
+                yield AskedFinding(number, box.finding.claim, ask, runs, box.about, wider and ratio)
 
 
 def _ask_box(stem: str, box: Box, chapters: Chapters) -> list[Condition]:
     return chapters.ask(stem, box.stated)
 
 
-def _list_claims(chapters: Chapters) -> Iterator[Asked]:
+def _list_claims(chapters: Chapters) -> Iterator[AskedFinding]:
     """Yield the verdicts on the printed numbers under each preset."""
     for claim in chapters.published:
         for preset, words in (chapters.study.manifest.presets or {"": ""}).items():
@@ -92,7 +92,7 @@ def _list_claims(chapters: Chapters) -> Iterator[Asked]:
             if claim.metric and verdict != "undecided":
                 under = f", {words}" if words else ""
                 ask = partial(_ask_claim, claim.number, preset, verdict)
-                yield Asked(f"claim {claim.number}", f"Claim {claim.number}{under}: {verdict}", ask, read)
+                yield AskedFinding(f"claim {claim.number}", f"Claim {claim.number}{under}: {verdict}", ask, read)
 
 
 def _judge_claim(number: int, preset: str, chapters: Chapters) -> tuple[tuple[Measured, Verdict], list[str]]:
@@ -108,7 +108,7 @@ def _ask_claim(number: int, preset: str, verdict: Verdict, chapters: Chapters) -
     return [Condition(f"claim {number} {verdict}", now == verdict, f"{value}, {now}", (value,))]
 
 
-def _choose(every: Sequence[Asked], chosen: str) -> list[Asked]:
+def _choose(every: Sequence[AskedFinding], chosen: str) -> list[AskedFinding]:
     found = [one for one in every if not chosen or one.number == chosen or one.number.startswith(f"{chosen}.")]
     found = found or [one for one in every if chosen.lower() in one.title.lower()]
     if not found:

@@ -16,7 +16,7 @@ from runner.base.dotted_keys import get
 from runner.base.errors import ConfigError, RunnerError
 from runner.base.quantities import ROUNDING
 from runner.config.compose.composer import Composer
-from runner.papers.study.asked import Asked, list_asked
+from runner.papers.study.asked import AskedFinding, list_asked
 from runner.papers.study.chapters import Chapters
 from runner.papers.study.items import Way, listed, make_listed
 from runner.papers.study.measured import Condition
@@ -26,7 +26,7 @@ from runner.statistics.scope import FEWEST
 from runner.store import Run
 from runner.sweeps.challenge.case import Case, check_sides, own_overrides
 from runner.sweeps.challenge.families import FAMILIES
-from runner.sweeps.challenge.question import Class, LeftOut, Side, Variation
+from runner.sweeps.challenge.question import Class, LeftOutVariation, Side, Variation
 from runner.sweeps.challenge.table import Values, list_variations, read_values
 from runner.sweeps.drawn import draws_nothing
 from runner.sweeps.job import check_job
@@ -40,7 +40,7 @@ Answer = Literal["holds", "turns", "cannot be asked"]
 
 
 @dataclass(frozen=True)
-class Outcome:
+class FindingOutcome:
     """A finding under a variation.
 
     Attributes:
@@ -72,8 +72,8 @@ class Challenged:
 
     number: str
     title: str
-    outcomes: Sequence[Outcome]
-    left_out: Sequence[LeftOut]
+    outcomes: Sequence[FindingOutcome]
+    left_out: Sequence[LeftOutVariation]
     moved: Sequence[str] = ()
 
 
@@ -105,7 +105,7 @@ class _Challenge:
         way: Settings of the execution.
     """
 
-    def __init__(self, chapters: Chapters, asked: Sequence[Asked], way: Way) -> None:
+    def __init__(self, chapters: Chapters, asked: Sequence[AskedFinding], way: Way) -> None:
         self._chapters, self._asked, self._way = chapters, asked, way
         self._runs = chapters.runs
         self._own = chapters.study.jobs()
@@ -138,14 +138,14 @@ class _Challenge:
         configs = check_sides([*self._sides.values()], self._loader)
         return dict(zip(self._sides, configs, strict=True))
 
-    def _list(self, one: Asked) -> tuple[list[Variation], list[LeftOut]]:
+    def _list(self, one: AskedFinding) -> tuple[list[Variation], list[LeftOutVariation]]:
         """Return the variations of a finding, first the asked case on fresh seeds, and those that do not apply."""
         case = Case([self._sides[name] for name in one.runs], [self._configs[name] for name in one.runs])
         kinds = ("numbers", *_WIDER) if one.wider else ("numbers",)
         allowed = {name: some for name, some in self._values.items() if FAMILIES[name][0].kind in kinds}
         values: Values = {name: some for name, some in allowed.items() if name not in one.about}
         found, left = list_variations(case, values)
-        left += [LeftOut(name, "", "the finding compares it itself", "numbers") for name in one.about]
+        left += [LeftOutVariation(name, "", "the finding compares it itself", "numbers") for name in one.about]
         if "seeds" in one.about:
             return [], left
         fresh = Variation("numbers", "seeds", "fresh", "fresh seeds", [[] for _ in one.runs])
@@ -187,7 +187,9 @@ class _Challenge:
                 one = made[str(cell)]
                 self._made[own] = one.missing or finished.open(one.place)
 
-    def _judge(self, one: Asked, variations: Sequence[Variation], left: Sequence[LeftOut]) -> Challenged:
+    def _judge(
+        self, one: AskedFinding, variations: Sequence[Variation], left: Sequence[LeftOutVariation]
+    ) -> Challenged:
         outcomes, moved, more = [], list[str](), list(left)
         asked: list[Condition] = []
         for variation in variations:
@@ -196,7 +198,7 @@ class _Challenge:
             }
             rejected = next((f"{name}: {run}" for name, run in changed.items() if isinstance(run, str)), "")
             if rejected:
-                more.append(LeftOut(variation.family, variation.value, rejected, variation.kind, True))
+                more.append(LeftOutVariation(variation.family, variation.value, rejected, variation.kind, True))
                 continue
             runs = {name: run for name, run in changed.items() if isinstance(run, Run)}
             outcome, conditions = self._ask(one, variation, runs)
@@ -207,7 +209,9 @@ class _Challenge:
         progress.step()
         return Challenged(one.number, one.title, outcomes, more, list(dict.fromkeys(moved)))
 
-    def _ask(self, one: Asked, variation: Variation, runs: Mapping[str, Run]) -> tuple[Outcome, list[Condition]]:
+    def _ask(
+        self, one: AskedFinding, variation: Variation, runs: Mapping[str, Run]
+    ) -> tuple[FindingOutcome, list[Condition]]:
         old = self._runs
         results = Results({**old, **runs}, old.missing, old.dropped, old.parts)
         chapters = Chapters(self._chapters.study, results, self._chapters.calibrations)
@@ -215,7 +219,7 @@ class _Challenge:
         try:
             conditions = one.ask(chapters)
         except RunnerError as error:
-            return Outcome(variation.kind, variation.family, variation.label, answer, str(error)), []
+            return FindingOutcome(variation.kind, variation.family, variation.label, answer, str(error)), []
         failed = [each for each in conditions if not each.holds]
         lost = [name for name, run in runs.items() if run.status == "failed" and old[name].status != "failed"]
         why = "; ".join(f"{each.text}: {each.measured}" for each in failed)
@@ -225,7 +229,7 @@ class _Challenge:
             why = f"{lost[0]} fails: {runs[lost[0]].failure}"
         else:
             answer = "turns"
-        return Outcome(variation.kind, variation.family, variation.label, answer, why), conditions
+        return FindingOutcome(variation.kind, variation.family, variation.label, answer, why), conditions
 
 
 def _moved(asked: Sequence[Condition], finer: Sequence[Condition]) -> Iterator[str]:

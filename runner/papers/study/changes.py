@@ -23,7 +23,7 @@ Value = str | float | None
 
 
 @dataclass(frozen=True)
-class Change:
+class VersionChange:
     """A difference between two versions.
 
     Attributes:
@@ -66,7 +66,7 @@ def read_conclusions(path: Path) -> Mapping[str, Any]:
     return content
 
 
-def changes(old: Mapping[str, Any], new: Mapping[str, Any]) -> list[Change]:
+def changes(old: Mapping[str, Any], new: Mapping[str, Any]) -> list[VersionChange]:
     """Return the differences of two versions, by kind, the largest changes of numbers first.
 
     Numbers that differ by no more than rounding have the kind ROUNDED; see `equal_up_to_rounding`.
@@ -87,9 +87,9 @@ def changes(old: Mapping[str, Any], new: Mapping[str, Any]) -> list[Change]:
     )
 
 
-def _change(kind: str, name: str, old: Value, new: Value) -> Change:
+def _change(kind: str, name: str, old: Value, new: Value) -> VersionChange:
     rounded = isinstance(old, float) and isinstance(new, float) and equal_up_to_rounding(old, new)
-    return Change(ROUNDED if rounded else kind, name, old, new)
+    return VersionChange(ROUNDED if rounded else kind, name, old, new)
 
 
 def _flat(studies: Mapping[str, Any], others: Mapping[str, Any]) -> Iterator[tuple[tuple[str, str], Value]]:

@@ -27,11 +27,11 @@ from runner.papers.reporting.published_claims import (
 )
 from runner.papers.study.claims import judged_claims, judged_statements, legend
 from runner.papers.study.code import public_functions
-from runner.papers.study.manifest import Part
+from runner.papers.study.manifest import ChapterPart
 from runner.papers.study.measured import Condition, Finding, Measured
 from runner.papers.study.prose import blocks, plots, read_chapter, signals, tables
 from runner.papers.study.prose.compared import compare
-from runner.papers.study.prose.expressions import Values, needed_names
+from runner.papers.study.prose.expressions import ChapterValues, needed_names
 from runner.papers.study.prose.reader import Reading, Stated, conditions_of
 from runner.papers.study.results import LeftOutError, MissingError, Results, Runs
 from runner.papers.study.study import Study
@@ -103,7 +103,7 @@ class Chapters:
         """
         file = f"{self.study.folder.name}/{stem}.md"
         text = self._text(f"{stem}.md")
-        values = Values(file, self.names(stem), self.study.code.values(_FIGURES) + self.study.code.values(stem))
+        values = ChapterValues(file, self.names(stem), self.study.code.values(_FIGURES) + self.study.code.values(stem))
         values.name_values(text, needed_names(text, [each.expression for each in stated]))
         return [condition for each in stated for condition in conditions_of(file, each, values)]
 
@@ -192,18 +192,18 @@ class Chapters:
         verdicts = {name: (verdict(by), measured) for name, (by, measured) in judged.items()}
         return Verdicts(caption, judged_statements(load_statements(self.study.folder), verdicts), _STATED)
 
-    def _each(self, chapters: Sequence[str | Part]) -> list[Section]:
+    def _each(self, chapters: Sequence[str | ChapterPart]) -> list[Section]:
         return parts((self._title(each), partial(self._one, each)) for each in chapters)
 
-    def _one(self, chapter: str | Part) -> Section:
+    def _one(self, chapter: str | ChapterPart) -> Section:
         made = self.section(chapter)
-        if not isinstance(chapter, Part):
+        if not isinstance(chapter, ChapterPart):
             progress.step()
         return made
 
-    def section(self, chapter: str | Part) -> Section:
+    def section(self, chapter: str | ChapterPart) -> Section:
         """Return the chapter of a file, such as "turns.md", or of several."""
-        if isinstance(chapter, Part):
+        if isinstance(chapter, ChapterPart):
             return Section(chapter.title, sections=self._each(chapter.sections))
         stem, _, suffix = chapter.rpartition(".")
         if suffix == "md":
@@ -214,9 +214,9 @@ class Chapters:
         section: Section = make(self.runs)
         return section
 
-    def _title(self, chapter: str | Part) -> str:
+    def _title(self, chapter: str | ChapterPart) -> str:
         """Return the title of a chapter, or the file name of one in Python, to show if it is left out."""
-        if isinstance(chapter, Part):
+        if isinstance(chapter, ChapterPart):
             return chapter.title
         heading = self._text(chapter).partition("\n")[0] if chapter.endswith(".md") else ""
         return heading.removeprefix("# ").strip() if heading.startswith("# ") else chapter
@@ -256,9 +256,9 @@ def chapter_text(path: Path) -> str:
         raise RunnerError(f"cannot read {path}: {error}") from None
 
 
-def _count(chapters: Sequence[str | Part]) -> int:
+def _count(chapters: Sequence[str | ChapterPart]) -> int:
     """Return the number of files that some chapters have."""
-    return sum(len(each.sections) if isinstance(each, Part) else 1 for each in chapters)
+    return sum(len(each.sections) if isinstance(each, ChapterPart) else 1 for each in chapters)
 
 
 def _is_plain(value: Any) -> bool:

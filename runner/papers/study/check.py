@@ -13,7 +13,7 @@ from runner.papers.study.chapters import Chapters, chapter_text
 from runner.papers.study.conclusions import list_failed_findings
 from runner.papers.study.expected_caveats import unexpected_caveats
 from runner.papers.study.measured import Measured
-from runner.papers.study.prose.expressions import Values
+from runner.papers.study.prose.expressions import ChapterValues
 from runner.papers.study.prose.reader import Reading, Stated, conditions_of
 from runner.papers.study.report import study_document
 from runner.papers.study.results import LeftOutError, MissingError, Parts, Runs
@@ -145,7 +145,7 @@ def never_failing(file: str, reading: Reading) -> list[str]:
     ]
 
 
-def _may_fail(file: str, stated: Stated, values: Values) -> bool:
+def _may_fail(file: str, stated: Stated, values: ChapterValues) -> bool:
     """Return True if each condition of an expression fails for some change."""
     given = conditions_of(file, stated, values)
     fell = {

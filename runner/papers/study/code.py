@@ -17,7 +17,7 @@ from runner.plugins.discovery import entry_point, named_part
 from runner.plugins.folder_code import folder_module
 
 
-class Code:
+class StudyCode:
     """The modules of a study's folder.
 
     Args:

@@ -13,7 +13,7 @@ from runner.papers.study.grid import Overrides
 from runner.papers.study.items import Way, listed
 from runner.papers.study.study import Study
 from runner.papers.study.tune import ROUNDS
-from runner.papers.study.tunings import Tuning, named, without_gains
+from runner.papers.study.tunings import StudyTuning, named, without_gains
 from runner.sweeps.check import check
 from runner.sweeps.estimate import START_UP, Estimate, estimate
 from runner.sweeps.plan import Item, Listed, Plan
@@ -57,7 +57,7 @@ class Amount:
         return f"{tuned}{self.runs:,} runs: {time} for all"
 
 
-def counted(study: Study, tunings: Sequence[Tuning], chosen: Collection[str]) -> dict[Overrides, Counts]:
+def counted(study: Study, tunings: Sequence[StudyTuning], chosen: Collection[str]) -> dict[Overrides, Counts]:
     """Return the numbers of trials, long runs and following runs, by their overrides.
 
     The gains are omitted because they are not known yet. Stored runs count like missing ones.
@@ -100,14 +100,14 @@ def estimate_all(plan: Plan, counts: Sequence[Counts]) -> dict[str, Amount]:
     return found
 
 
-def _runs(study: Study, tunings: Sequence[Tuning], chosen: Collection[str]) -> Iterable[Overrides]:
+def _runs(study: Study, tunings: Sequence[StudyTuning], chosen: Collection[str]) -> Iterable[Overrides]:
     """Return the runs of some laws; where no key is tuned, all gains of a law are the same."""
     same = {each.name for each in tunings if not each.ranges}
     runs = (own for own in study.jobs().values() if not set(chosen).isdisjoint(own))
     return dict.fromkeys(without_gains(own) if any(name in same for name, _ in named(own)) else own for own in runs)
 
 
-def told(laws: Sequence[str], amounts: Mapping[str, Amount], workers: int) -> str:
+def cost_line(laws: Sequence[str], amounts: Mapping[str, Amount], workers: int) -> str:
     """Return a line with the law or the number of laws, the number of arms, and the cost."""
     total = sum(amounts.values(), start=Amount(0, 0, 0, Estimate(0.0)))
     named_laws = laws[0] if len(laws) == 1 else f"{len(laws)} laws"

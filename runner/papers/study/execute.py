@@ -9,12 +9,12 @@ from runner import store
 from runner.base import progress
 from runner.config.compose.composer import Composer
 from runner.config.composed import CALIBRATION
-from runner.papers.study.estimate import counted, estimate_all, planned, told
+from runner.papers.study.estimate import cost_line, counted, estimate_all, planned
 from runner.papers.study.items import Way, listed, make_items
 from runner.papers.study.results import Results
 from runner.papers.study.study import Study
 from runner.papers.study.tune import find_gains
-from runner.papers.study.tunings import Tuning
+from runner.papers.study.tunings import StudyTuning
 from runner.simulation.provenance import portable_overrides
 from runner.store import Calibration, Run
 from runner.sweeps.check import check
@@ -62,14 +62,14 @@ def make_all(
     return study.results(runs, not_run), study.results(found, not_found)
 
 
-def _tell_estimate(study: Study, tunings: Sequence[Tuning], way: Way) -> None:
+def _tell_estimate(study: Study, tunings: Sequence[StudyTuning], way: Way) -> None:
     """Print what tunings take with the runs of their laws, before they are started."""
     progress.begin("estimating")
     counts = counted(study, tunings, {override for each in tunings for override in each.chosen})
     amounts = estimate_all(planned(counts, way), [*counts.values()])
     laws = list(dict.fromkeys(each.law for each in tunings))
     workers = Composer(way.config_dirs).sweeper([text for text in way.overrides if text.startswith("hydra.")]).workers
-    print(f"runner: {told(laws, amounts, workers)}, less where they are stored", file=sys.stderr)
+    print(f"runner: {cost_line(laws, amounts, workers)}, less where they are stored", file=sys.stderr)
 
 
 def _command(study: Study, overrides: Sequence[str], run: Run) -> str:

@@ -12,7 +12,7 @@ from runner.base.data_file import read_data
 from runner.base.errors import RunnerError, nearest
 from runner.config.judgement import THRESHOLDS
 from runner.papers.study.results import distinct
-from runner.reporting.document import Block, Notice, Section, Table, Text
+from runner.reporting.document import Notice, ReportBlock, Section, Table, Text
 from runner.reporting.markup import literal
 from runner.reporting.table import numbers
 from runner.schema.model import StrictModel
@@ -66,7 +66,7 @@ def caveats_as_data(runs: Mapping[str, Run], expected: Sequence[ExpectedCaveat])
 def caveats_section(runs: Mapping[str, Run], expected: Sequence[ExpectedCaveat]) -> Section:
     """Return the caveats of a study's runs with their causes, and a warning if one is not expected."""
     lines = unexpected_caveats(runs, expected)
-    blocks: list[Block] = []
+    blocks: list[ReportBlock] = []
     if lines:
         more = f"; and {len(lines) - _TOLD} more" if len(lines) > _TOLD else ""
         text = literal(f"{'; '.join(lines[:_TOLD])}{more}.")
@@ -110,7 +110,7 @@ FILE = "caveats.yaml"
 _Texts = Annotated[list[Annotated[str, Field(min_length=1)]], Field(min_length=1)]
 
 
-class Entry(StrictModel):
+class ExpectedCaveats(StrictModel):
     """Some caveats of some runs that are expected for one reason.
 
     Attributes:
@@ -133,7 +133,7 @@ def read_expected(folder: Path) -> tuple[ExpectedCaveat, ...]:
     path = folder / FILE
     if not path.is_file():
         return ()
-    entries = read_data(path, list[Entry])
+    entries = read_data(path, list[ExpectedCaveats])
     for rule in (rule for entry in entries for rule in entry.rules):
         if rule not in THRESHOLDS:
             raise RunnerError(

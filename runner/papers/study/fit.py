@@ -21,7 +21,7 @@ from runner.papers.study.grid import Overrides
 from runner.papers.study.items import Way
 from runner.papers.study.study import Study
 from runner.papers.study.tune import read_number
-from runner.papers.study.tunings import Tuning, key_of, without_gains
+from runner.papers.study.tunings import StudyTuning, key_of, without_gains
 from runner.simulation.run import simulate_repetition
 from runner.simulation.tick_time import PROBED_TICKS
 from runner.store import simulated_part
@@ -44,7 +44,7 @@ class Tick:
 
 
 @dataclass
-class Fit:
+class LawFit:
     """Compatibility of a law with a study.
 
     Attributes:
@@ -74,7 +74,7 @@ class Fit:
             self._found[text] = first, count + 1
 
 
-def fit(study: Study, without: Study, part: UserPlugin) -> Fit:
+def fit(study: Study, without: Study, part: UserPlugin) -> LawFit:
     """Return the compatibility of a user-supplied law with a study; nothing is stored.
 
     Args:
@@ -84,7 +84,7 @@ def fit(study: Study, without: Study, part: UserPlugin) -> Fit:
     """
     tunings = [each for each in study.untuned() if each.law == part.name]
     ranged = {each.overrides: each for each in tunings if each.ranges}
-    found = Fit(bool(ranged))
+    found = LawFit(bool(ranged))
     counts = counted(study, tunings, {part.override})
     compared: dict[Overrides, tuple[str, Overrides]] = {}
     for name, own, other in study.compared():
@@ -149,7 +149,7 @@ def _first_ticks(config: RunConfig) -> Tick:
     return Tick(config.timing.tick, float(np.median(trace.tick_seconds)), None if failure is None else failure.time)
 
 
-def _check_ends(tuning: Tuning, composed: Composed, part: UserPlugin, found: Fit) -> None:
+def _check_ends(tuning: StudyTuning, composed: Composed, part: UserPlugin, found: LawFit) -> None:
     """Note what is wrong with a law at both ends of each of its ranges."""
     for name, factors in tuning.ranges.items():
         try:

@@ -12,7 +12,7 @@ from runner.base.errors import RunnerError, nearest
 from runner.base.limits import GRID
 from runner.base.sanitize import quoted
 from runner.papers.expressions import insertions
-from runner.papers.expressions.evaluator import Budget, Scope
+from runner.papers.expressions.evaluator import OperationBudget, Scope
 from runner.papers.expressions.grammar import ExpressionError
 from runner.papers.study.code import UserPlugin
 from runner.papers.study.results import Parts
@@ -41,7 +41,7 @@ def fill(text: str, scope: Mapping[str, Level]) -> str:
     if len(text) > _LONGEST:
         raise RunnerError(f"{quoted(text)}: has {len(text)} characters; allowed: up to {_LONGEST}")
     try:
-        return insertions.fill(text, Scope({"round": _rounded}, scope), Budget(_OPERATIONS), _shown)
+        return insertions.fill(text, Scope({"round": _rounded}, scope), OperationBudget(_OPERATIONS), _shown)
     except ExpressionError as error:
         raise RunnerError(f"{quoted(text)}: {error.reason}") from None
 
@@ -108,7 +108,7 @@ FlatOverrides = Annotated[list[str], BeforeValidator(_flat)]
 """A list of overrides, written with lists of them as items, as an alias puts in."""
 
 
-class Grid(StrictModel):
+class StudyGrid(StrictModel):
     """Runs that differ in the levels of axes.
 
     Attributes:
@@ -126,7 +126,7 @@ class Grid(StrictModel):
     plugins: dict[str, Literal["controller", "environment", "plant", "trajectory"]] = Field(default_factory=dict)
 
     @model_validator(mode="after")
-    def _axes_that_take_plugins(self) -> "Grid":
+    def _axes_that_take_plugins(self) -> "StudyGrid":
         for axis in self.plugins:
             if axis not in self.over:
                 raise ValueError(f"plugins: there is no axis '{axis}'{nearest(axis, self.over)}")

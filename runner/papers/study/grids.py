@@ -36,15 +36,15 @@ from runner.base.limits import read_text
 from runner.config.compose.files import refuse_settings
 from runner.config.compose.messages import describe
 from runner.papers.study.code import UserPlugin
-from runner.papers.study.grid import Grid, Level, Overrides
+from runner.papers.study.grid import Level, Overrides, StudyGrid
 from runner.papers.study.manifest import Profile
 from runner.papers.study.results import Parts, name_of
-from runner.papers.study.tunings import TunedGrid, Tuning, all_tunings, check_named
+from runner.papers.study.tunings import StudyTuning, TunedGrid, all_tunings, check_named
 from runner.schema.model import StrictModel
 
 FILE = "runs.yaml"
 L = TypeVar("L", str, int, float)
-G = TypeVar("G", bound=Grid)
+G = TypeVar("G", bound=StudyGrid)
 
 
 class _Values(StrictModel):
@@ -77,7 +77,7 @@ class Grids:
             raise RunnerError(f"cannot read {path}: {error}") from None
         content = read_yaml(text, path)
         problems: list[str] = []
-        roots = {root: _parse(root, Grid, content, problems) for root in ("grids", "calibrations")}
+        roots = {root: _parse(root, StudyGrid, content, problems) for root in ("grids", "calibrations")}
         tuned = _parse("tunings", TunedGrid, content, problems)
         if profile is not None:
             problems += profile.problems({**roots["grids"], **roots["calibrations"], **tuned})
@@ -97,7 +97,7 @@ class Grids:
         self._grids = {**roots["grids"], **roots["calibrations"]}
         self.parts: dict[str, Parts] = {}
         self.runs, self.calibrations = (self._expanded(roots[root], root, problems) for root in roots)
-        self.tunings: dict[str, Tuning] = {}
+        self.tunings: dict[str, StudyTuning] = {}
         try:
             self.tunings = all_tunings(tuned, self._values)
             if not problems:
@@ -114,7 +114,7 @@ class Grids:
         if problems:
             raise RunnerError("\n".join(f"{path}: {problem}" for problem in problems))
 
-    def _expanded(self, grids: Mapping[str, Grid], root: str, problems: list[str]) -> dict[str, Overrides]:
+    def _expanded(self, grids: Mapping[str, StudyGrid], root: str, problems: list[str]) -> dict[str, Overrides]:
         runs: dict[str, Overrides] = {}
         for key, grid in grids.items():
             try:
@@ -140,7 +140,7 @@ class Grids:
                 for (parts, own), (_, other) in zip(*pairs, strict=True):
                     yield name_of(parts), own, other
 
-    def grid(self, key: str) -> Grid:
+    def grid(self, key: str) -> StudyGrid:
         """Return a grid.
 
         Raises:

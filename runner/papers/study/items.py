@@ -7,7 +7,7 @@ from typing import Literal
 
 from runner.config.compose.composer import Composer
 from runner.config.compose.files import outputs_override
-from runner.store import Outcome
+from runner.store import RunOutcome
 from runner.sweeps.plan import Item, Listed
 from runner.sweeps.run import Engine, run_sweep
 
@@ -39,7 +39,7 @@ class MadeItem:
     """
 
     place: str
-    end: Outcome | None
+    end: RunOutcome | None
 
     @property
     def missing(self) -> str:

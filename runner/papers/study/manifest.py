@@ -9,7 +9,7 @@ from pydantic import Field, PositiveInt
 from runner.base.data_file import read_data
 from runner.base.errors import RunnerError, nearest
 from runner.base.paths import STUDY_FILE
-from runner.papers.study.grid import Grid, Level, Overrides
+from runner.papers.study.grid import Level, Overrides, StudyGrid
 from runner.schema.model import StrictModel
 
 _SUFFIXES = (".md", ".py")
@@ -17,7 +17,7 @@ _SUFFIXES = (".md", ".py")
 Text = Annotated[str, Field(min_length=1)]
 
 
-G = TypeVar("G", bound=Grid)
+G = TypeVar("G", bound=StudyGrid)
 
 
 class Profile(StrictModel):
@@ -35,7 +35,7 @@ class Profile(StrictModel):
     without: list[str] = Field(default_factory=list)
     tuned_anew: bool = False
 
-    def problems(self, grids: Mapping[str, Grid]) -> Iterator[str]:
+    def problems(self, grids: Mapping[str, StudyGrid]) -> Iterator[str]:
         """Yield what it names that the grids do not have."""
         for key in dict.fromkeys([*self.levels, *self.without]):
             if key not in grids:
@@ -72,7 +72,7 @@ class Profile(StrictModel):
         return (*kept, f"repetitions={self.repetitions}")
 
 
-class Part(StrictModel):
+class ChapterPart(StrictModel):
     """A chapter whose sections are separate files.
 
     Attributes:
@@ -120,7 +120,7 @@ class Manifest(StrictModel):
     title: Text
     source: Text
     abstract: Text
-    chapters: Annotated[list[Text | Part], Field(min_length=1)]
+    chapters: Annotated[list[Text | ChapterPart], Field(min_length=1)]
     presets: dict[str, str] = Field(default_factory=dict)
     words: dict[str, str] = Field(default_factory=dict)
     in_all: bool = True

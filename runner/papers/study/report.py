@@ -9,7 +9,7 @@ from pydantic import Field, model_validator
 
 from runner.base.data_file import read_data
 from runner.base.paths import studies_dir
-from runner.papers.expressions.evaluator import Budget, Scope
+from runner.papers.expressions.evaluator import OperationBudget, Scope
 from runner.papers.expressions.grammar import ExpressionError
 from runner.papers.expressions.insertions import fill
 from runner.papers.reporting.claims import Verdicts, find_conditional_claims
@@ -20,11 +20,11 @@ from runner.papers.study.results import Runs, distinct
 from runner.papers.study.study import Study
 from runner.reporting import outline
 from runner.reporting.document import (
-    Block,
     Code,
     Cover,
     Document,
     Provenance,
+    ReportBlock,
     Section,
     Table,
     Text,
@@ -40,7 +40,7 @@ _MISSING, _NOWHERE = "missing", "–"
 _DRAWN = "drawn anew"  # what was not to be expected, and is there
 
 
-class Item(StrictModel):
+class SourceItem(StrictModel):
     """A figure, table or formula of the source.
 
     Attributes:
@@ -79,7 +79,7 @@ class Checklist(StrictModel):
     incomplete: str
     caption: str
     columns: Annotated[list[str], Field(min_length=2, max_length=2)]
-    items: Annotated[list[Item], Field(min_length=1)]
+    items: Annotated[list[SourceItem], Field(min_length=1)]
 
     @model_validator(mode="after")
     def _check_braces(self) -> Self:
@@ -119,7 +119,7 @@ class Checklist(StrictModel):
 
 
 def _filled(text: str, **values: str | int) -> str:
-    return fill(text, Scope({}, values), Budget())
+    return fill(text, Scope({}, values), OperationBudget())
 
 
 def load_checklist(study: str | Path) -> Checklist | None:
@@ -135,7 +135,7 @@ def load_checklist(study: str | Path) -> Checklist | None:
     return read_data(path, Checklist) if path.is_file() else None
 
 
-def _row(item: Item, place: str | None) -> list[str]:
+def _row(item: SourceItem, place: str | None) -> list[str]:
     """Return an item's name, its subject, its state, and its section."""
     if place is not None:
         return [item.name, item.about, _DRAWN if item.absent else item.state, place]
@@ -209,7 +209,7 @@ def _where_from(runs: Mapping[str, Run], calibrations: Mapping[str, Calibration]
         f"{count} runs{more} lie behind this report, each stored with its config, trace and metrics under "
         f"outputs/runs{folders}. Figures show repetition 0; numbers are medians over the repetitions."
     )
-    blocks: list[Block] = [Text(text)]
+    blocks: list[ReportBlock] = [Text(text)]
     if runs:
         rows = provenance(list(runs.values())).rows
         blocks.append(Provenance([*rows, *([("code of the study", code)] if code else [])]))
@@ -235,7 +235,7 @@ def citing_section(title: str, source: str, bibtex: str, runs: Mapping[str, Run]
         runs: The stored runs behind the report, by name.
     """
     newest = max(runs.values(), key=lambda run: str(run.provenance["date"]), default=None)
-    blocks: list[Block] = [Text("The source:"), Code(bibtex.strip())] if bibtex.strip() else []
+    blocks: list[ReportBlock] = [Text("The source:"), Code(bibtex.strip())] if bibtex.strip() else []
     return Section("Cite this", [*blocks, Text("This report:"), Code(_report(title, source, newest))])
 
 

@@ -111,7 +111,7 @@ def parts_of(pattern: str, levels: Mapping[str, object]) -> Parts:
 
 
 @dataclass(frozen=True)
-class Found:
+class MatchedRun:
     """A run that a pattern stands for.
 
     Attributes:
@@ -130,7 +130,7 @@ def axes_of(text: str) -> tuple[str, ...]:
     return tuple(axis for axis, _ in _BRACES.findall(text))
 
 
-def found(runs: Runs, pattern: str, by: Sequence[str] = ()) -> list[Found]:
+def matching_runs(runs: Runs, pattern: str, by: Sequence[str] = ()) -> list[MatchedRun]:
     """Return the runs that a pattern stands for, sorted by levels, each axis in the order of the plan.
 
     Args:
@@ -147,7 +147,7 @@ def found(runs: Runs, pattern: str, by: Sequence[str] = ()) -> list[Found]:
         if axis not in axes:
             raise RunnerError(f"the pattern {pattern} has no axis '{axis}'{nearest(axis, axes)}")
     if not axes:
-        return [Found(pattern, runs[pattern], {})]
+        return [MatchedRun(pattern, runs[pattern], {})]
     alike = {name: own for name in runs.with_words(wanted) if (own := _levels(wanted, runs.parts[name]))}
     if not alike:
         raise RunnerError(_unlike(runs, pattern, wanted))
@@ -162,7 +162,7 @@ def found(runs: Runs, pattern: str, by: Sequence[str] = ()) -> list[Found]:
     order = [*by, *(axis for axis in axes if axis not in by)]
     ranks = {axis: chosen.get(axis) or [*dict.fromkeys(levels[name][axis] for name in asked)] for axis in order}
     asked.sort(key=lambda name: [ranks[axis].index(levels[name][axis]) for axis in order])
-    return [Found(name, runs[name], levels[name]) for name in asked]
+    return [MatchedRun(name, runs[name], levels[name]) for name in asked]
 
 
 def other(runs: Mapping[str, Run], pattern: str, levels: Mapping[str, str]) -> Run:

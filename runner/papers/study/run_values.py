@@ -9,7 +9,7 @@ from runner.base.arrays import FloatArray
 from runner.base.errors import RunnerError, nearest
 from runner.base.quantities import with_powers
 from runner.papers.study.measured import Measured
-from runner.reporting.document import Block, Notice
+from runner.reporting.document import Notice, ReportBlock
 from runner.reporting.words import in_words
 from runner.store import Run
 
@@ -40,7 +40,7 @@ def delay_of(run: Run) -> int:
     return int(list(delay.values())[-1] if isinstance(delay, Mapping) else delay)
 
 
-def failures(runs: Mapping[str, Run]) -> list[Block]:
+def failures(runs: Mapping[str, Run]) -> list[ReportBlock]:
     """Return a notice that names each failed run with its failure; nothing where none failed."""
     reasons: dict[str, list[str]] = {}
     for name, run in runs.items():

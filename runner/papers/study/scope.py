@@ -5,7 +5,7 @@ from textwrap import shorten
 
 from runner.papers.study.challenge import Answer, Challenged
 from runner.reporting.challenge.words import TITLES
-from runner.reporting.document import Block, Section, Table, Text
+from runner.reporting.document import ReportBlock, Section, Table, Text
 from runner.reporting.markup import literal, without_marks
 from runner.statistics.scope import FEWEST
 from runner.sweeps.challenge.question import CLASSES
@@ -58,7 +58,7 @@ def unsettled(found: Sequence[Challenged]) -> Iterator[str]:
 
 def scope_section(found: Sequence[Challenged]) -> Section:
     """Return the section of a report on the scope of its findings."""
-    blocks: list[Block] = [Text(_ABOUT), scope_table(found)]
+    blocks: list[ReportBlock] = [Text(_ABOUT), scope_table(found)]
     turned = [
         [one.number, each.label, literal(each.why)] for one in found for each in one.outcomes if each.answer != "holds"
     ]

@@ -10,7 +10,7 @@ from typing import Any
 from runner.base.errors import RunnerError, nearest
 from runner.base.paths import check_inside, ships
 from runner.papers.reporting.published_claims import CLAIMS, load_claims
-from runner.papers.study.code import Code, UserPlugin
+from runner.papers.study.code import StudyCode, UserPlugin
 from runner.papers.study.expected_caveats import ExpectedCaveat, read_expected
 from runner.papers.study.grid import Overrides
 from runner.papers.study.grids import FILE as RUNS
@@ -18,7 +18,7 @@ from runner.papers.study.grids import Grids
 from runner.papers.study.manifest import Profile, read_manifest
 from runner.papers.study.names import Location, find_study
 from runner.papers.study.results import Parts, Results, Thing, name_of
-from runner.papers.study.tunings import Gains, Tuning, named, put_in, read_gains
+from runner.papers.study.tunings import Gains, StudyTuning, named, put_in, read_gains
 from runner.plugins.discovery import use_plugins
 
 Calibrations = Mapping[str, tuple[str, ...]]
@@ -64,7 +64,7 @@ class Study:
         self.installed = location.package is not None
         self.profile = profile or self.manifest.default_profile
         self.chosen = self._profile(self.profile)
-        self.code = Code(location.folder, location.package, allow_code)
+        self.code = StudyCode(location.folder, location.package, allow_code)
         self._given = tuple(parts)
         self._gains: Gains = {} if self.chosen and self.chosen.tuned_anew else read_gains(location.folder)
         self.tuned: Gains = {}
@@ -120,7 +120,7 @@ class Study:
         """Return stored runs or calibrations by name as results of the study, with why the others were not made."""
         return Results(found, missing, self.dropped(), self.parts())
 
-    def untuned(self) -> list[Tuning]:
+    def untuned(self) -> list[StudyTuning]:
         """Return the tunings whose gains its runs take and that are not known, each as many times as they ask for."""
         times: dict[str, int] = {}
         for overrides in self.grids.runs.values():

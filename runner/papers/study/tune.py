@@ -12,10 +12,10 @@ from runner.base.errors import RunnerError
 from runner.config.compose.composer import Composer
 from runner.papers.study.grid import Overrides
 from runner.papers.study.items import Way, make_items
-from runner.papers.study.tunings import Gains, Tuning, key_of
+from runner.papers.study.tunings import Gains, StudyTuning, key_of
 from runner.store import Run
 from runner.sweeps.plan import Grid, Item
-from runner.sweeps.tuning.key import Key
+from runner.sweeps.tuning.key import TunedKey
 from runner.sweeps.tuning.objective import Objective, Trial, best
 from runner.sweeps.tuning.sampler import make_optuna_trial, propose
 
@@ -41,9 +41,9 @@ class _Search:
         proven: Numbers of the trials that are stable in their longer runs.
     """
 
-    tuning: Tuning
+    tuning: StudyTuning
     seed: int
-    keys: Sequence[Key]
+    keys: Sequence[TunedKey]
     start: Mapping[str, float]
     trials: list[Trial] = field(default_factory=list)
     proven: set[int] = field(default_factory=set)
@@ -108,7 +108,7 @@ class _Search:
             self.proven.add(number)
 
 
-def find_gains(tunings: Sequence[Tuning], way: Way) -> Gains:
+def find_gains(tunings: Sequence[StudyTuning], way: Way) -> Gains:
     """Return the gains that tunings find, by name; missing trials are executed.
 
     If every trial fails, a law keeps its previous values.
@@ -175,13 +175,13 @@ def _growth(run: Run | None) -> str:
     return _GROWS if last is None or any(last > _GROWN * each for each in earlier) else ""
 
 
-def _searches(tuning: Tuning, loader: Composer) -> list[_Search]:
+def _searches(tuning: StudyTuning, loader: Composer) -> list[_Search]:
     start = _start(tuning, loader)
     keys = [key_of(name, start[name], own) for name, own in tuning.ranges.items()]
     return [_Search(tuning, seed, keys, start) for seed in range(1, 1 + tuning.times)]
 
 
-def _start(tuning: Tuning, loader: Composer) -> dict[str, float]:
+def _start(tuning: StudyTuning, loader: Composer) -> dict[str, float]:
     """Return the values of a tuning's keys in the config that its trials share."""
     if not tuning.ranges:
         return {}
@@ -189,7 +189,7 @@ def _start(tuning: Tuning, loader: Composer) -> dict[str, float]:
     return {key: read_number(tuning, key, resolved) for key in tuning.ranges}
 
 
-def read_number(tuning: Tuning, key: str, resolved: Mapping[str, Any]) -> float:
+def read_number(tuning: StudyTuning, key: str, resolved: Mapping[str, Any]) -> float:
     """Return the value that a key of a tuning has in a config.
 
     Raises:

@@ -38,10 +38,10 @@ from runner.base.data_file import read_data
 from runner.base.errors import RunnerError, nearest
 from runner.config.compose.files import refuse_settings
 from runner.papers.study.code import UserPlugin
-from runner.papers.study.grid import FlatOverrides, Grid, Level, Overrides
+from runner.papers.study.grid import FlatOverrides, Level, Overrides, StudyGrid
 from runner.papers.study.results import name_of
 from runner.plugins.metric_units import unit_of, units
-from runner.sweeps.tuning.key import Key
+from runner.sweeps.tuning.key import TunedKey
 
 Factor = Annotated[float, Field(gt=0.0)]
 Range = Annotated[tuple[Factor, Factor], Field(strict=False)]
@@ -50,7 +50,7 @@ Ranges = Mapping[str, Range]
 
 
 @dataclass(frozen=True)
-class Tuning:
+class StudyTuning:
     """Keys, ranges, objective and budget of a tuning.
 
     Attributes:
@@ -78,7 +78,7 @@ class Tuning:
     longer: Sequence[Overrides]
 
 
-class TunedGrid(Grid):
+class TunedGrid(StudyGrid):
     """A grid whose combinations are tuned.
 
     Attributes:
@@ -118,7 +118,7 @@ class TunedGrid(Grid):
         own = {part.name: _ranges_of(part) for part in parts if part.group == self.plugins.get(axis)}
         return made.model_copy(update={"ranges": {axis: {**self.ranges[axis], **own}}})
 
-    def tunings(self, key: str, values: Mapping[str, float]) -> Iterator[Tuning]:
+    def tunings(self, key: str, values: Mapping[str, float]) -> Iterator[StudyTuning]:
         """Yield what is tuned; see Grid.runs."""
         axis = self._axis
         for level, own in self.over[axis].items():
@@ -129,7 +129,7 @@ class TunedGrid(Grid):
             grids = [grid, *(grid.model_copy(update={"with_": each}) for each in self.longer)]
             for (parts, overrides), *longer in zip(*(each.runs(key, values) for each in grids), strict=True):
                 runs = [own for _, own in longer]
-                yield Tuning(name_of(parts), *law, overrides, ranges, self.minimize, self.bounds, *budget, runs)
+                yield StudyTuning(name_of(parts), *law, overrides, ranges, self.minimize, self.bounds, *budget, runs)
 
     @property
     def _axis(self) -> str:
@@ -139,13 +139,13 @@ class TunedGrid(Grid):
         return [str(level) for level in self.over[axis]]
 
 
-def all_tunings(grids: Mapping[str, TunedGrid], values: Mapping[str, float]) -> dict[str, Tuning]:
+def all_tunings(grids: Mapping[str, TunedGrid], values: Mapping[str, float]) -> dict[str, StudyTuning]:
     """Return the tunings of several grids by name; see TunedGrid.tunings.
 
     Raises:
         RunnerError: if two have one name.
     """
-    found: dict[str, Tuning] = {}
+    found: dict[str, StudyTuning] = {}
     for tuning in itertools.chain.from_iterable(grid.tunings(key, values) for key, grid in grids.items()):
         if tuning.name in found:
             raise RunnerError(f"tunings: the name '{tuning.name}' is that of another tuning")
@@ -153,10 +153,10 @@ def all_tunings(grids: Mapping[str, TunedGrid], values: Mapping[str, float]) -> 
     return found
 
 
-def key_of(name: str, value: float, factors: Range) -> Key:
+def key_of(name: str, value: float, factors: Range) -> TunedKey:
     """Return the key of a range of factors on the value that it has otherwise."""
     low, high = (float(f"{value * factor:.6g}") for factor in factors)
-    return Key(name, low, high, step=None, log=True, integer=False)
+    return TunedKey(name, low, high, step=None, log=True, integer=False)
 
 
 def _ranges_of(part: UserPlugin) -> Ranges:

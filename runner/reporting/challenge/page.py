@@ -17,13 +17,24 @@ from runner.reporting.challenge.words import (
     variations_table,
     word_text,
 )
-from runner.reporting.document import Block, Code, Curves, Document, Panel, Provenance, Section, Series, Table, Text
+from runner.reporting.document import (
+    Code,
+    Curves,
+    Document,
+    Panel,
+    Provenance,
+    ReportBlock,
+    Section,
+    Series,
+    Table,
+    Text,
+)
 from runner.reporting.markup import literal
 from runner.reporting.metric_titles import capital, title
 from runner.reporting.sweep.report import run_command
 from runner.store.sweep import Sweep
 from runner.sweeps.challenge.question import CLASSES
-from runner.sweeps.challenge.stored import Challenge, Found
+from runner.sweeps.challenge.stored import AnsweredVariation, Challenge
 
 _COLORS = {
     "holds": 0, "holds, weaker": 5, "does not appear": 0, "vanishes": 3, "appears": 1, "reversed": 1, "not shown": 4,
@@ -65,10 +76,10 @@ def challenge_document(made: Challenge, sweep: Sweep) -> Document:
     )
 
 
-def _variations(made: Challenge, commands: Mapping[str, str]) -> list[Block]:
+def _variations(made: Challenge, commands: Mapping[str, str]) -> list[ReportBlock]:
     """Return the specification curve and the table of the variations."""
     placed = list(_placed(made))
-    blocks: list[Block] = []
+    blocks: list[ReportBlock] = []
     if placed:
         caption = (
             f"Specification curve: differences in {title(made.question.metric)} sorted within each class "
@@ -80,7 +91,7 @@ def _variations(made: Challenge, commands: Mapping[str, str]) -> list[Block]:
     return [*blocks, variations_table(made)]
 
 
-def _placed(made: Challenge) -> Iterator[tuple[float, Found]]:
+def _placed(made: Challenge) -> Iterator[tuple[float, AnsweredVariation]]:
     """Yield the abscissa of each variation that was tried: sorted within its class, with a gap between classes."""
     start = 0.0
     for kind in CLASSES:
@@ -90,7 +101,7 @@ def _placed(made: Challenge) -> Iterator[tuple[float, Found]]:
         start += len(found) + _GAP if found else 0.0
 
 
-def _middle(made: Challenge, one: Found) -> tuple[float, float, float]:
+def _middle(made: Challenge, one: AnsweredVariation) -> tuple[float, float, float]:
     """Return the ordinate of a variation and the ends of its interval: in per cent, as logarithms if all have them."""
     judged, nothing = one.judged, (np.nan, np.nan, np.nan)
     if judged is None or judged.effect is None:
@@ -107,7 +118,9 @@ def _in_logarithms(made: Challenge) -> bool:
     return all(one.log_ratio is not None for one in told)
 
 
-def _differences(made: Challenge, placed: Sequence[tuple[float, Found]], commands: Mapping[str, str]) -> Panel:
+def _differences(
+    made: Challenge, placed: Sequence[tuple[float, AnsweredVariation]], commands: Mapping[str, str]
+) -> Panel:
     a, b = (side.name for side in made.question.sides)
     words = dict.fromkeys(word_text(made, one) if one.judged is None else one.judged.word for _, one in placed)
     series = []
@@ -133,7 +146,7 @@ def _differences(made: Challenge, placed: Sequence[tuple[float, Found]], command
     return Panel("", "variations", label, [*lines, *series], x_range=_ends(placed))
 
 
-def _choices(placed: Sequence[tuple[float, Found]]) -> Panel:
+def _choices(placed: Sequence[tuple[float, AnsweredVariation]]) -> Panel:
     """Return a row of dots for each family, in the order of the classes from above."""
     families = list(dict.fromkeys(one.variation.family for _, one in placed))[::-1]
     series = []
@@ -145,11 +158,11 @@ def _choices(placed: Sequence[tuple[float, Found]]) -> Panel:
     return Panel("", "variations", "", series, x_range=_ends(placed), y_names=names)
 
 
-def _ends(placed: Sequence[tuple[float, Found]]) -> tuple[float, float]:
+def _ends(placed: Sequence[tuple[float, AnsweredVariation]]) -> tuple[float, float]:
     return placed[0][0] - 0.5, placed[-1][0] + 0.5
 
 
-def _command(one: Found, commands: Mapping[str, str]) -> str:
+def _command(one: AnsweredVariation, commands: Mapping[str, str]) -> str:
     return commands.get(one.hashes[-1], "") if one.hashes else ""
 
 

@@ -10,7 +10,7 @@ from runner.statistics.conclusion import SHARE
 from runner.statistics.scope import TOLD, Word
 from runner.statistics.turning import Turn
 from runner.sweeps.challenge.question import CLASSES, Class
-from runner.sweeps.challenge.stored import Challenge, Found, Turning
+from runner.sweeps.challenge.stored import AnsweredVariation, Challenge, Turning
 
 TITLES = {
     "engine": "other engines",
@@ -111,7 +111,7 @@ def variations_table(made: Challenge) -> Table:
     return Table("", header, rows)
 
 
-def word_text(made: Challenge, one: Found) -> str:
+def word_text(made: Challenge, one: AnsweredVariation) -> str:
     """Return the word of a variation with what belongs to it."""
     if one.judged is None:
         return "not tried: budget" if made.came_back else "not tried"
@@ -167,7 +167,7 @@ def _effect_text(made: Challenge, effect: float | None) -> str:
     return number(effect, 2) if made.question.is_fraction else f"{number(100.0 * effect, 2)} %"
 
 
-def class_of(made: Challenge, kind: Class) -> list[Found]:
+def class_of(made: Challenge, kind: Class) -> list[AnsweredVariation]:
     """Return the variations of a class."""
     return [one for one in made.found if one.variation.kind == kind]
 
@@ -185,7 +185,7 @@ def _of_class(made: Challenge, kind: Class) -> Iterator[str]:
     if kind == "numbers":
         yield from _settled(made, found)
         return
-    families: dict[str, list[Found]] = {}
+    families: dict[str, list[AnsweredVariation]] = {}
     for one in found:
         families.setdefault(one.variation.family, []).append(one)
     whole = [name for name, some in families.items() if all(_word(one) in KEPT for one in some)]
@@ -216,7 +216,7 @@ def _of_class(made: Challenge, kind: Class) -> Iterator[str]:
         yield f"Not shown with {'; '.join(map(_untold, untold))}."
 
 
-def _settled(made: Challenge, found: Sequence[Found]) -> Iterator[str]:
+def _settled(made: Challenge, found: Sequence[AnsweredVariation]) -> Iterator[str]:
     kept = [one for one in found if _word(one) in KEPT]
     if len(kept) == len(found):
         yield f"Settled numerically ({'; '.join(one.variation.label for one in found)})."
@@ -226,7 +226,7 @@ def _settled(made: Challenge, found: Sequence[Found]) -> Iterator[str]:
     yield f"Not settled numerically: {'; '.join(texts)}."
 
 
-def _turned(made: Challenge, some: Sequence[Found]) -> str:
+def _turned(made: Challenge, some: Sequence[AnsweredVariation]) -> str:
     """Return the turning values of some variations."""
     texts = []
     for turning in made.turnings:
@@ -253,12 +253,12 @@ def turning_rows(made: Challenge) -> Iterator[tuple[Turning, str, str]]:
         yield turning, label, "; ".join(texts) or (f"vanishes from {turning.label} on" if turning.label else "no turn")
 
 
-def _untold(one: Found) -> str:
+def _untold(one: AnsweredVariation) -> str:
     needed = one.judged.needed if one.judged else None
     return f"{one.variation.label}{f' ({number(float(needed), 2)} pairs would tell)' if needed else ''}"
 
 
-def _labels(made: Challenge, some: Sequence[Found]) -> str:
+def _labels(made: Challenge, some: Sequence[AnsweredVariation]) -> str:
     """Return the changes of some variations; the title of a family if all its variations are among them."""
     sizes = {name: sum(one.variation.family == name for one in made.found) for name in TITLES}
     texts = []
@@ -269,7 +269,7 @@ def _labels(made: Challenge, some: Sequence[Found]) -> str:
     return "; ".join(dict.fromkeys(texts))
 
 
-def _word(one: Found) -> str:
+def _word(one: AnsweredVariation) -> str:
     return one.judged.word if one.judged else ""
 
 
@@ -277,7 +277,7 @@ def _size(effect: float, is_fraction: bool) -> str:
     return number(abs(effect), 2) if is_fraction else f"{number(100.0 * abs(effect), 2)} %"
 
 
-def _numbers(made: Challenge, one: Found) -> list[str]:
+def _numbers(made: Challenge, one: AnsweredVariation) -> list[str]:
     judged = one.judged
     if judged is None or judged.effect is None:
         return ["", "", str(judged.pairs) if judged and judged.pairs else ""]

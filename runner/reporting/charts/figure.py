@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from runner.base.arrays import FloatArray
-from runner.reporting.block import Block
+from runner.reporting.block import ReportBlock
 from runner.reporting.table import Origin
 
 POINTS = 2000
@@ -138,7 +138,7 @@ class Map:
 
 
 @dataclass(frozen=True)
-class Curves(Block):
+class Curves(ReportBlock):
     """A figure of curves: interactive in HTML (zoom, hover, legend toggles), a still in the PDF.
 
     Attributes:
@@ -164,7 +164,7 @@ class Curves(Block):
 
 
 @dataclass(frozen=True)
-class Maps(Block):
+class Maps(ReportBlock):
     """Heat maps with one scale of colours: interactive in HTML, a still in the PDF.
 
     Attributes:

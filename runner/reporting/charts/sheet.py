@@ -126,7 +126,7 @@ def style(sheet: Sheet) -> Any:
 
 
 @dataclass(frozen=True)
-class Names:
+class NameLayout:
     """Layout of the names of an axis.
 
     Attributes:
@@ -150,7 +150,7 @@ class Names:
             axis.set_tick_params(rotation=90)
 
 
-def names_below(names: Sequence[str], length: float, sheet: Sheet) -> Names:
+def names_below(names: Sequence[str], length: float, sheet: Sheet) -> NameLayout:
     """Return the layout of the names below an axis of a length, in inches.
 
     Strings are side by side, in up to three lines, or turned, and whole. Of numbers every other one and so on will do.
@@ -159,25 +159,25 @@ def names_below(names: Sequence[str], length: float, sheet: Sheet) -> Names:
     place = length / max(1, len(texts))
     longest = max(map(len, texts), default=0)
     if (longest + 2) * sheet.character <= place:
-        return Names(texts, 1, False, sheet.line)
+        return NameLayout(texts, 1, False, sheet.line)
     if all(map(is_number, texts)):
         step = math.ceil((longest + 2) * sheet.character / place)
-        return Names(texts[::step], step, False, sheet.line)
+        return NameLayout(texts[::step], step, False, sheet.line)
     lines = [_broken(text, int(place / sheet.character) - 1) for text in texts]
     if all(lines):
-        return Names(["\n".join(each) for each in lines], 1, False, max(map(len, lines)) * sheet.line)
+        return NameLayout(["\n".join(each) for each in lines], 1, False, max(map(len, lines)) * sheet.line)
     step = math.ceil(sheet.line / place)
-    return Names(texts[::step], step, True, longest * sheet.character)
+    return NameLayout(texts[::step], step, True, longest * sheet.character)
 
 
-def names_beside(names: Sequence[str], length: float, sheet: Sheet) -> Names:
+def names_beside(names: Sequence[str], length: float, sheet: Sheet) -> NameLayout:
     """Return the layout of the names next to an axis of a length, in inches: in lines where there is room for them."""
     texts = [cut(name, _LONGEST) for name in names]
     step = math.ceil(len(texts) * sheet.line / length) or 1
     room = int(length / sheet.line / max(1, len(texts)))
     lines = [_broken(text, 14, min(room, _MOST_LINES)) or [text] for text in texts[::step]]
     longest = max((len(line) for each in lines for line in each), default=0)
-    return Names(["\n".join(each) for each in lines], step, False, longest * sheet.character)
+    return NameLayout(["\n".join(each) for each in lines], step, False, longest * sheet.character)
 
 
 def _broken(text: str, most: int, lines: int = _MOST_LINES) -> list[str]:

@@ -37,7 +37,7 @@ from runner.reporting.charts.figure import (
 )
 from runner.reporting.charts.sheet import (
     REPORT,
-    Names,
+    NameLayout,
     Sheet,
     literal,
     names_below,
@@ -79,8 +79,8 @@ class _Frame:
     title: str
     entries: list[str]
     columns: int
-    x_names: Names | None = None
-    y_names: Names | None = None
+    x_names: NameLayout | None = None
+    y_names: NameLayout | None = None
 
     @property
     def x_label(self) -> str:

@@ -14,7 +14,7 @@ from runner.base.arrays import FloatArray
 from runner.base.dotted_keys import split_override
 from runner.base.errors import RunnerError
 from runner.base.sanitize import few
-from runner.statistics import Comparison, Empty, is_empty, subtract
+from runner.statistics import Empty, PairedComparison, is_empty, subtract
 from runner.store.axes import find_axis, group_cells, number_rows
 from runner.sweeps.differing import value_text
 from runner.sweeps.measurements import Measurements
@@ -62,6 +62,11 @@ class Pairs:
     alone: tuple[Sequence[Label], Sequence[Label]] = ((), ())
     axis: str = ""
 
+    @property
+    def sides(self) -> tuple[tuple[Measurements, Cells], tuple[Measurements, Cells]]:
+        """Each sweep with its cells."""
+        return (self.a, self.of_a), (self.b, self.of_b)
+
     def __len__(self) -> int:
         """Return the number of pairs."""
         return len(self.of_a)
@@ -86,7 +91,7 @@ def label_text(label: Label) -> str:
     return ", ".join(f"{key}={value}" for key, value in label.items()) or "the only cell"
 
 
-def compare(pairs: Pairs, metric: str) -> Comparison | None:
+def compare(pairs: Pairs, metric: str) -> PairedComparison | None:
     """Return the difference of the second cells from the first in a metric; None if no repetition is in both.
 
     Each draw, that is a repetition of a seed, counts once, with the mean over the pairs of cells: cells of one seed
@@ -118,13 +123,14 @@ def compare(pairs: Pairs, metric: str) -> Comparison | None:
         chosen = np.arange(len(kept))
     one, other, by_draw = (_mean_by(draw, values)[chosen] for values in (first[both], second[both], differences))
     error = _error(pairs, metric) if metric in a.finer and metric in b.finer else None
-    return Comparison(one, other, by_draw, error, _largest_rounding(pairs, metric), copies, left_out)
+    return PairedComparison(one, other, by_draw, error, _largest_rounding(pairs, metric), copies, left_out)
 
 
 def _largest_rounding(pairs: Pairs, metric: str) -> float:
     """Return the largest relative change of a metric through rounding in the compared cells; 0 if it is unknown."""
-    sides = ((pairs.a, pairs.of_a), (pairs.b, pairs.of_b))
-    return max((float(side.rounding[metric][of].max()) for side, of in sides if metric in side.rounding), default=0.0)
+    return max(
+        (float(side.rounding[metric][of].max()) for side, of in pairs.sides if metric in side.rounding), default=0.0
+    )
 
 
 def _error(pairs: Pairs, metric: str) -> float | None:

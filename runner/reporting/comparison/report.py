@@ -8,7 +8,7 @@ import numpy as np
 from runner.base.quantities import label_with_unit, quantity
 from runner.base.sanitize import few, one_line
 from runner.reporting.answer_map import make_map
-from runner.reporting.answers import EXPLAINED, HEADER, PAIRS, Answer, Asked
+from runner.reporting.answers import EXPLAINED, HEADER, PAIRS, Answer, AskedComparison
 from runner.reporting.challenge.beside import scope_line
 from runner.reporting.comparison.difference_figure import difference_panel
 from runner.reporting.comparison.pairs import Label, Pairs, label_text
@@ -23,7 +23,6 @@ from runner.reporting.comparison.sweeps import (
     size_told,
 )
 from runner.reporting.document import (
-    Block,
     Code,
     Curves,
     Document,
@@ -31,6 +30,7 @@ from runner.reporting.document import (
     Notice,
     Panel,
     Provenance,
+    ReportBlock,
     Section,
     Series,
     Table,
@@ -107,20 +107,20 @@ def _sides(sides: Sequence[Measurements]) -> Section:
 
 def _sections(found: SweepComparison, wanted: Sequence[str]) -> list[Section]:
     told = literal(found.differences.in_words(found.pairs.first, found.pairs.second))
-    first: Block = (
+    first: ReportBlock = (
         Text(told) if len(found.differences.names) < 2 else Notice("warning", "More than one thing differs", told)
     )
     cells = Items([literal(text) for text in found.cells_told()])
     texts = sentences(found.answers)[1:]
     return [
-        Section("Answers", [*([Items(list(map(literal, texts)))] if texts else []), _short(found)]),
+        Section("Answers", [*([Items(list(map(literal, texts)))] if texts else []), _main_table(found)]),
         Section("What differs", [first, *_difference_tables(found), cells]),
         Section("Cell by cell", figure_blocks(found, wanted)),
         Section("Every metric", table_blocks(found, wanted)),
     ]
 
 
-def _short(found: SweepComparison) -> Table:
+def _main_table(found: SweepComparison) -> Table:
     shown = choose_metrics(found, ())
     names = main_metrics([found.pairs.a, found.pairs.b], [one.metric for one in shown])
     return Table(literal(f"Each metric is a separate question. {PAIRS}"),
@@ -140,7 +140,7 @@ def _caveats(sides: Sequence[Measurements]) -> Section:
 
 
 def _made(sides: Sequence[Measurements]) -> Section:
-    blocks: list[Block] = []
+    blocks: list[ReportBlock] = []
     for side in sides:
         blocks += [Text(f"{side.name} is made by"), Code(side.command)]
     rows = []
@@ -151,11 +151,11 @@ def _made(sides: Sequence[Measurements]) -> Section:
     return Section("Provenance", [*blocks, Provenance(rows)])
 
 
-def _difference_tables(found: SweepComparison) -> list[Block]:
+def _difference_tables(found: SweepComparison) -> list[ReportBlock]:
     """Return the resolved values that differ, and what made the runs where that differs."""
     a, b = found.pairs.first, found.pairs.second
     values = [*found.differences.options, *found.differences.values]
-    blocks: list[Block] = []
+    blocks: list[ReportBlock] = []
     if values:
         left = len(values) - _MOST_ROWS
         more = f" {left} more differ." if left > 0 else ""
@@ -176,7 +176,7 @@ def _difference_tables(found: SweepComparison) -> list[Block]:
     return blocks
 
 
-def figure_blocks(found: SweepComparison, wanted: Sequence[str]) -> list[Block]:
+def figure_blocks(found: SweepComparison, wanted: Sequence[str]) -> list[ReportBlock]:
     """Return a figure of the first metrics that differ, or of the first ones."""
     names = list(dict.fromkeys(one.metric for one in found.answers))
     by_name = {one.metric: one for one in reversed(found.answers)}
@@ -241,13 +241,13 @@ def choose_metrics(found: SweepComparison, wanted: Sequence[str]) -> list[Answer
     return [by_name[name] for name in (wanted or whole_metrics(by_name)) if name in by_name]
 
 
-def table_blocks(found: SweepComparison, wanted: Sequence[str]) -> list[Block]:
+def table_blocks(found: SweepComparison, wanted: Sequence[str]) -> list[ReportBlock]:
     """Return the method, the table over all cells, and that of those with the largest differences."""
     a, b = found.pairs.first, found.pairs.second
     whole = choose_metrics(found, wanted)
     parts = [one for one in found.answers if one not in whole and (not one.at or len(found.pairs) == 1)]
     text = f"The difference is {b} - {a}. {EXPLAINED} {POOLED}"
-    tables: list[Block] = [Text(text)]
+    tables: list[ReportBlock] = [Text(text)]
     if whole:
         tables.append(_table("Every metric whose pooled number describes all cells.", found.pairs, whole))
     if parts:
@@ -270,7 +270,7 @@ def _table(caption: str, pairs: Pairs, some: Sequence[Answer], folded: bool = Fa
     return Table(caption, header, rows, folded=folded)
 
 
-def _row(one: Asked) -> list[str]:
+def _row(one: AskedComparison) -> list[str]:
     return [title(one.metric), *(_median(median, one.unit) for median in one.comparison.medians)]
 
 

@@ -9,7 +9,7 @@ from runner.reporting.challenge.beside import scope_line
 from runner.reporting.comparison.differences import ConfigDifferences, find_differences
 from runner.reporting.comparison.pairs import match
 from runner.reporting.comparison.sweeps import compare_runs, letter
-from runner.reporting.document import Block, Document, Notice, Section, Table
+from runner.reporting.document import Document, Notice, ReportBlock, Section, Table
 from runner.reporting.markup import literal
 from runner.reporting.metric_titles import title, whole_metrics
 from runner.reporting.overlaid_runs import Level, overlaid
@@ -60,13 +60,13 @@ def runs_document(runs: Sequence[Run]) -> Document:
 
 def _side_by_side(
     runs: Sequence[Run], names: Sequence[str], differences: Sequence[ConfigDifferences], answers: Sequence[Answer]
-) -> list[Block]:
+) -> list[ReportBlock]:
     """Return the metrics as tables, of two runs with the differences in pairs; the curves, and the keys that differ."""
     values = [[*one.options, *one.values] for one in differences]
     firsts = {value.key: value.a for some in values for value in some}
     others = [{value.key: value.b for value in some} for some in values]
     rows = [[key, first, *(other.get(key, first) for other in others)] for key, first in firsts.items()]
-    blocks: list[Block] = []
+    blocks: list[ReportBlock] = []
     if len(runs) == 2 and answers:
         caption = f"Each metric is a separate question. {PAIRS if any(one.interval for one in answers) else ''}"
         blocks.append(Table(literal(caption), *short_table(answers)))
@@ -87,7 +87,7 @@ def _metrics(runs: Sequence[Run], names: Sequence[str]) -> Table:
     return Table("Medians of the metrics.", ["metric", *numbers(*names)], rows)
 
 
-def _curves(runs: Sequence[Run], names: Sequence[str]) -> list[Block]:
+def _curves(runs: Sequence[Run], names: Sequence[str]) -> list[ReportBlock]:
     blocks = overlaid([Level(name, [run], place) for place, (run, name) in enumerate(zip(runs, names, strict=True))]
                       [:_MOST_CURVES])  # fmt: skip
     if len(runs) > _MOST_CURVES:

@@ -10,7 +10,7 @@ import numpy as np
 from runner.base.arrays import FloatArray
 from runner.base.errors import RunnerError
 from runner.base.quantities import ROUNDING
-from runner.reporting.answers import Answer, Asked, ask, judge
+from runner.reporting.answers import Answer, AskedComparison, ask, judge
 from runner.reporting.comparison.differences import ConfigDifferences, find_differences
 from runner.reporting.comparison.pairs import Label, Pairs, keep_common_seeds, label_text, level_pairs, match
 from runner.reporting.conditions import ALIKE, keep_described
@@ -56,7 +56,7 @@ class SweepComparison:
     pairs: Pairs
     differences: ConfigDifferences
     answers: Sequence[Answer]
-    cells: Sequence[Asked]
+    cells: Sequence[AskedComparison]
     candidates: int
 
     def cells_told(self) -> Iterator[str]:
@@ -207,7 +207,7 @@ def answer_rows(answers: Sequence[Answer]) -> list[dict[str, Any]]:
     return rows
 
 
-def counts_by_sign(one: Asked) -> tuple[int, int]:
+def counts_by_sign(one: AskedComparison) -> tuple[int, int]:
     """Return the number of cells in which the median of the differences is below zero, and above zero."""
     if one.pairs is None:
         return 0, 0
@@ -242,14 +242,14 @@ def _some(labels: Sequence[Label]) -> str:
     return "; ".join(map(label_text, labels[:_NAMED])) + more
 
 
-def _movements(pairs: Pairs, names: Sequence[str]) -> tuple[list[Asked], int]:
+def _movements(pairs: Pairs, names: Sequence[str]) -> tuple[list[AskedComparison], int]:
     """Return the cells with the largest differences, and of how many in all metrics; none for a single cell."""
     if len(pairs) < 2:
         return [], 0
     sizes = [_relative(pairs, name) for name in names]
     moved = np.nan_to_num(np.array(sizes), nan=0.0, posinf=np.inf)
     cells = list(pairs.each())
-    found: list[Asked] = []
+    found: list[AskedComparison] = []
     for place in np.argsort(-moved, axis=None, kind="stable").tolist():
         metric, cell = divmod(place, len(pairs))
         if len(found) == MOST_MOVEMENTS or not moved[metric, cell]:

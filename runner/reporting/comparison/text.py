@@ -9,7 +9,7 @@ import numpy as np
 from runner.base.dotted_keys import dotted, leaves
 from runner.base.machine import read_machine
 from runner.base.sanitize import one_line
-from runner.reporting.answers import EXPLAINED, HEADER, PAIRS, Answer, Asked, ask
+from runner.reporting.answers import EXPLAINED, HEADER, PAIRS, Answer, AskedComparison, ask
 from runner.reporting.comparison.differences import Value, find_differences
 from runner.reporting.comparison.pairs import label_text, match
 from runner.reporting.comparison.sweeps import (
@@ -197,5 +197,5 @@ def _value(value: Value) -> list[str]:
     return [value.key, value.a, value.b, value.cells]
 
 
-def _head(one: Asked) -> list[Cell]:
+def _head(one: AskedComparison) -> list[Cell]:
     return [one.metric, one.unit, *map(Number, one.comparison.medians)]

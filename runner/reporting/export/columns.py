@@ -16,7 +16,7 @@ BEYOND, MISSING = "∞", "–"
 _MARKDOWN = re.compile(r"([\\`*{}|~$!])|(?<![^\W_])(_)|(_)(?![^\W_])")  # an underscore within a word is itself
 
 
-class Unit(NamedTuple):
+class ScaledUnit(NamedTuple):
     """A unit such as "mm", "N m" or "m/s^2", with a power of ten before it.
 
     Attributes:
@@ -46,7 +46,7 @@ class Written(NamedTuple):
     text: str
     low: str = ""
     high: str = ""
-    unit: Unit | None = None
+    unit: ScaledUnit | None = None
 
     def with_interval(self, form: str) -> str:
         """Return the cell with its interval, such as "4.1 [3.9, 4.4]" in the form "[{}, {}]"."""
@@ -66,7 +66,7 @@ class PaperColumn(NamedTuple):
     title: str
     kind: str
     cells: Sequence[Written]
-    unit: Unit | None = None
+    unit: ScaledUnit | None = None
 
     @property
     def has_intervals(self) -> bool:
@@ -100,11 +100,11 @@ def lay_out(table: Table) -> list[PaperColumn]:
             rows = [_write([cell], unit) for cell, unit in zip(cells, units, strict=True)]
             shown = [Written(str(unit), unit=unit) for unit, _ in rows]
             laid = [each._replace(cells=shown) if each.kind == "unit" else each for each in laid]
-            laid.append(PaperColumn(column.title, column.kind, [cell for _, (cell,) in rows], Unit("1")))
+            laid.append(PaperColumn(column.title, column.kind, [cell for _, (cell,) in rows], ScaledUnit("1")))
     return laid
 
 
-def _write(cells: Sequence[Cell], unit: str) -> tuple[Unit, list[Written]]:
+def _write(cells: Sequence[Cell], unit: str) -> tuple[ScaledUnit, list[Written]]:
     """Return the unit that fits some numbers, and these in that unit."""
     ends = [end for cell in cells if isinstance(cell, Number) for end in (cell.value, cell.low, cell.high)]
     known = [end for end in ends if end is not None and math.isfinite(end) and abs(end) >= ROUNDING]
@@ -113,7 +113,7 @@ def _write(cells: Sequence[Cell], unit: str) -> tuple[Unit, list[Written]]:
     power = 0 if largest == 0.0 or _SMALLEST <= largest < _LARGEST else 3 * math.floor(math.log10(largest) / 3)
     scale = factor * 10.0**-power
     written = [_text(cell, scale) if isinstance(cell, Number) else Written(cell) for cell in cells]
-    return Unit(name, power), written
+    return ScaledUnit(name, power), written
 
 
 def _text(cell: Number, scale: float) -> Written:

@@ -4,7 +4,7 @@ import re
 from collections.abc import Iterable, Sequence
 
 from runner.base.sanitize import plain
-from runner.reporting.export.columns import BEYOND, MISSING, PaperColumn, Unit, Written, lay_out
+from runner.reporting.export.columns import BEYOND, MISSING, PaperColumn, ScaledUnit, Written, lay_out
 from runner.reporting.export.fitting import fit
 from runner.reporting.table import Table
 
@@ -140,7 +140,7 @@ def _row(cells: Iterable[str]) -> str:
     return " & ".join(cells).strip() + r" \\"
 
 
-def unit_macro(unit: Unit) -> str:
+def unit_macro(unit: ScaledUnit) -> str:
     """Return a unit as siunitx sets it, its own letters where siunitx has no name for it; nothing for 1."""
     factors = _FACTOR.findall(unit.name)
     known = all(name in _UNITS for _, name, _ in factors)
@@ -150,7 +150,7 @@ def unit_macro(unit: Unit) -> str:
     return rf"\unit{{{macros}}}" if macros else _own(unit)
 
 
-def _own(unit: Unit) -> str:
+def _own(unit: ScaledUnit) -> str:
     return "" if unit.name == "1" else escape_latex(unit.name)
 
 

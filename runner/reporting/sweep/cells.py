@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 
 from runner.base.quantities import label_with_unit, with_powers
 from runner.reporting.charts.figure import spaced_indices
-from runner.reporting.document import Block, Notice, Origin, Section, Table, Text
+from runner.reporting.document import Notice, Origin, ReportBlock, Section, Table, Text
 from runner.reporting.markup import literal
 from runner.reporting.sweep.subject import Subject, key_label, shorten
 from runner.reporting.table import numbers
@@ -36,7 +36,7 @@ def axes_section(subject: Subject, command: str) -> Section:
         names = axis.texts
         shown = names if len(names) <= _MOST_VALUES else [*names[: _MOST_VALUES - 2], "...", names[-1]]
         rows.append([key_label(axis), str(len(names)), ", ".join(shown)])
-    blocks: list[Block] = []
+    blocks: list[ReportBlock] = []
     cells = len(measurements.hashes)
     if rows:
         blocks.append(Table("Swept axes.", ["axis", *numbers("number"), "values"], rows, origin))
@@ -72,7 +72,7 @@ def axes_section(subject: Subject, command: str) -> Section:
     return Section("Axes", blocks)
 
 
-def _also_differs(subject: Subject) -> list[Block]:
+def _also_differs(subject: Subject) -> list[ReportBlock]:
     """Return the table of config values that are not the same in all cells, though no axis sweeps them."""
     rows = []
     for difference in subject.measurements.differences[:_MOST_ROWS]:
@@ -107,7 +107,7 @@ def failures_section(subject: Subject) -> Section:
     return Section("Failed runs", blocks)
 
 
-def _failure_map(subject: Subject, failed: NDArray[np.bool_]) -> list[Block]:
+def _failure_map(subject: Subject, failed: NDArray[np.bool_]) -> list[ReportBlock]:
     """Return the table of causes over the two axes whose levels differ most in their shares of failed cells."""
     axes = [axis for axis in subject.axes if len(axis.values) > 1]
     shares = {axis.name: np.bincount(axis.level, failed) / np.bincount(axis.level) for axis in axes}
@@ -207,7 +207,7 @@ def caveats_section(subject: Subject) -> Section | None:
     """Return the section on rules that found something, each with its worst cell, and on changes of rules; or None."""
     measurements = subject.measurements
     cells = len(measurements.hashes)
-    blocks: list[Block] = []
+    blocks: list[ReportBlock] = []
     rows = [
         [rule, f"{count} of {cells}", subject.cell_name(cell) or "the only one", text]
         for rule, count, cell, text in measurements.caveats_by_rule()

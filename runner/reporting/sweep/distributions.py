@@ -9,7 +9,7 @@ from runner.base.arrays import FloatArray
 from runner.base.errors import StoreError
 from runner.base.quantities import format_range, quantity, with_ends
 from runner.reporting.charts.figure import POINTS, spaced_indices
-from runner.reporting.document import Block, Curves, Notice, Panel, Section, Series, Table, Text
+from runner.reporting.document import Curves, Notice, Panel, ReportBlock, Section, Series, Table, Text
 from runner.reporting.figures import playback, torque_and_error
 from runner.reporting.markup import literal
 from runner.reporting.metric_titles import title
@@ -29,7 +29,7 @@ def section(subject: Subject) -> Section:
     """Return the distributions of the first metric."""
     metric = subject.metrics[0]
     panels = [_shares(subject, metric, axis) for axis in subject.axes]
-    blocks: list[Block] = []
+    blocks: list[ReportBlock] = []
     if panels:
         caption = (
             f"Share of all repetitions in which the {title(metric)} is at most the value below; a curve that "
@@ -219,7 +219,7 @@ def extremes_section(subject: Subject, shown: ShownCells, runs: Mapping[int, Run
     return Section("Lowest and highest median", (_medians(subject, ends), *_motions(subject, shown, runs)))
 
 
-def _motions(subject: Subject, shown: ShownCells, runs: Mapping[int, Run]) -> list[Block]:
+def _motions(subject: Subject, shown: ShownCells, runs: Mapping[int, Run]) -> list[ReportBlock]:
     levels = [Level(name, [runs[cell] for cell in cells], look) for name, cells, look in shown.cells]
     count = sum(len(cells) for _, cells, _ in shown.cells)
     others = [axis for axis in subject.axes if axis is not shown.axis]
@@ -269,7 +269,7 @@ def _with_interval(values: np.ndarray, unit: str) -> str:
     return f"{text} (n = {interval.n})" if interval.low is None else f"{text} ({ends}, n = {interval.n})"
 
 
-def motion_blocks(levels: Sequence[Level], told: str = "", played: str = "") -> list[Block]:
+def motion_blocks(levels: Sequence[Level], told: str = "", played: str = "") -> list[ReportBlock]:
     """Return curves and motions of repetition 0 of some runs, or the reason why there are none; see `overlaid`."""
     try:
         if len(levels) == 1 and len(levels[0].runs) == 1:

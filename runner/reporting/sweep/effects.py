@@ -7,7 +7,7 @@ import numpy as np
 from runner.base.arrays import FloatArray
 from runner.base.quantities import number
 from runner.reporting.charts.scales import EQUAL, widen_range
-from runner.reporting.document import Block, Curves, Panel, Section, Series, Table, Text
+from runner.reporting.document import Curves, Panel, ReportBlock, Section, Series, Table, Text
 from runner.reporting.markup import literal
 from runner.reporting.metric_titles import title
 from runner.reporting.sweep.subject import MOST_GROUPS, Subject, key_label, spans_decades
@@ -24,7 +24,7 @@ _MOST_OF_IT = 0.5  # share of the spread from which on the draws are named
 
 def section(subject: Subject) -> Section:
     """Return the share of the variation that each axis explains, and each cell over one axis or two."""
-    blocks: list[Block] = [_table(subject.effects), Text(_explained(subject.effects))]
+    blocks: list[ReportBlock] = [_table(subject.effects), Text(_explained(subject.effects))]
     many = [axis.name for axis in subject.axes if len(axis.values) > MOST_GROUPS]
     if many:
         blocks.append(Text(literal(f"{', '.join(many)}: taken in {MOST_GROUPS} groups of neighbouring values.")))

@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 from runner.base.arrays import FloatArray
 from runner.reporting import metric_titles
 from runner.reporting.charts.figure import spaced_indices
-from runner.reporting.document import Block, Formula, Map, Maps, Section, Series, Text
+from runner.reporting.document import Formula, Map, Maps, ReportBlock, Section, Series, Text
 from runner.reporting.markup import literal
 from runner.reporting.sweep.subject import Subject, key_label, spans_decades
 from runner.store.axes import Axis, group_cells
@@ -26,7 +26,7 @@ _POINTS = 400
 def section(subject: Subject) -> Section:
     """Return the maps of a sweep over two axes or more, in which every value is that of one cell."""
     x, y, *others = choose_axes(subject)
-    blocks: list[Block] = [
+    blocks: list[ReportBlock] = [
         _maps(subject, metric, x, y, others) for metric in subject.metrics if np.isfinite(subject.medians[metric]).any()
     ]
     return Section("Maps", [*blocks, *theory_text([x, y])])
@@ -160,7 +160,7 @@ def theory_lines(x: Axis, y: Axis) -> list[Series]:
     return [Series("ω_n h = 1", columns[inside], rows[inside], "dashed")] if inside.any() else []
 
 
-def theory_text(axes: list[Axis]) -> list[Block]:
+def theory_text(axes: list[Axis]) -> list[ReportBlock]:
     """Return the meaning of the line of a map, if it has one."""
     if len(axes) < 2 or not _sampling(axes[0], axes[1]):
         return []

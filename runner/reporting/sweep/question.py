@@ -11,7 +11,7 @@ from runner.reporting.answers import EXPLAINED, HEADER, PAIRS, Answer
 from runner.reporting.charts.figure import spaced_indices
 from runner.reporting.comparison.difference_figure import difference_panel
 from runner.reporting.comparison.sweeps import compare_levels
-from runner.reporting.document import Block, Curves, Items, Section, Table, Text
+from runner.reporting.document import Curves, Items, ReportBlock, Section, Table, Text
 from runner.reporting.markup import literal
 from runner.reporting.metric_titles import capital, first_screen, title
 from runner.reporting.sentences import sentences, short_table, unanswerable
@@ -55,7 +55,7 @@ def asked_axis(subject: Subject) -> Axis | None:
     return find_question(subject.axes, subject.measurements.question)
 
 
-def answer_blocks(answers: Sequence[Answer], texts: Sequence[str] = ()) -> list[Block]:
+def answer_blocks(answers: Sequence[Answer], texts: Sequence[str] = ()) -> list[ReportBlock]:
     """Return further answers in sentences, the figure of paired differences and the short table with its meaning."""
     caption = f"Each metric is a separate question. {PAIRS if any(one.interval for one in answers) else ''}"
     drawn = [one for one in answers if one.interval and one.is_tested]
@@ -160,7 +160,7 @@ def pairs_section(answers: Sequence[Answer]) -> Section | None:
         rows = [[one.place, ", ".join(one.names), *one.cells] for one in shown]
         caption = f"{capital(title(metric))}, pooled where that describes all conditions, and by condition{fewer}."
         header = ["at", "compared", *numbers(*HEADER), "the second is"]
-        blocks: list[Block] = [Table(literal(caption), header, rows)] if rows else []
+        blocks: list[ReportBlock] = [Table(literal(caption), header, rows)] if rows else []
         if lost:
             blocks.append(Text(f"{lost} comparison{' has' if lost == 1 else 's have'} no value in either."))
         if len(kept) + lost < len(found):

@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 
 from runner.base.arrays import FloatArray
 from runner.reporting.charts.figure import spaced_indices
-from runner.reporting.document import Block, Curves, Map, Maps, Notice, Panel, Section, Series, Table, Text
+from runner.reporting.document import Curves, Map, Maps, Notice, Panel, ReportBlock, Section, Series, Table, Text
 from runner.reporting.markup import literal
 from runner.reporting.spec_blocks import RULE, bound_text, late_text, probability
 from runner.reporting.sweep import maps
@@ -92,7 +92,7 @@ def section(subject: Subject, sweep: Sweep) -> Section:
     """Return the section on the spec of a sweep."""
     failing = find_failing(subject, sweep.spec)
     axes = [axis for axis in subject.axes if axis.name != maps.POOLED]
-    blocks: list[Block] = [Text(literal(f"{RULE} {_TOLD}"))]
+    blocks: list[ReportBlock] = [Text(literal(f"{RULE} {_TOLD}"))]
     late = _late(subject, sweep)
     if late:
         blocks.append(Notice("warning", "Bounds that were set after the result was known", literal(late)))

@@ -22,7 +22,7 @@ from runner.sweeps.table import median_ends
 if TYPE_CHECKING:
     from runner.reporting.answers import Answer
     from runner.statistics import EffectAnalysis
-    from runner.sweeps.tuning.key import Key
+    from runner.sweeps.tuning.key import TunedKey
 
 MOST_METRICS = 5
 """Metrics that a report compares if the user names none."""
@@ -175,7 +175,7 @@ def group_levels(axis: Axis) -> NDArray[np.intp]:
     return axis.level * MOST_GROUPS // count if count > MOST_GROUPS else axis.level
 
 
-def key_label(key: "Axis | Key") -> str:
+def key_label(key: "Axis | TunedKey") -> str:
     """Return a swept or tuned key with its unit, as on the axis of a figure."""
     return label_with_unit(key.name, key.unit)
 

@@ -7,7 +7,7 @@ import numpy as np
 from runner.base.arrays import FloatArray
 from runner.base.quantities import quantity
 from runner.reporting.charts.figure import POINTS, spaced_indices
-from runner.reporting.document import Block, Curves, Panel, Section, Series, Table, Text
+from runner.reporting.document import Curves, Panel, ReportBlock, Section, Series, Table, Text
 from runner.reporting.metric_titles import COSTS, title
 from runner.reporting.sweep.subject import Subject, spans_decades
 from runner.reporting.table import numbers
@@ -68,7 +68,7 @@ def section(subject: Subject, metrics: tuple[str, str]) -> Section:
     text = f"The front has {len(best)} of {len(present)} cells: along it one median falls and the other grows. No test."
     if len(best) == 1:
         text = "One cell has the lowest median of both. No test."
-    blocks: list[Block] = [
+    blocks: list[ReportBlock] = [
         Text(text),
         Curves(
             f"Pareto front of {title(metrics[0])} and {title(metrics[1])}, medians of each cell.", [panel], columns=1

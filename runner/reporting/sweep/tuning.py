@@ -16,7 +16,7 @@ from runner.reporting.answers import CHOSEN, Answer
 from runner.reporting.challenge.beside import scope_line
 from runner.reporting.charts.figure import spaced_indices
 from runner.reporting.comparison.sweeps import compare_runs
-from runner.reporting.document import Block, Curves, Document, Notice, Origin, Panel, Section, Series, Table, Text
+from runner.reporting.document import Curves, Document, Notice, Origin, Panel, ReportBlock, Section, Series, Table, Text
 from runner.reporting.figures import cover
 from runner.reporting.markup import literal
 from runner.reporting.metric_titles import metric_label, title
@@ -32,7 +32,7 @@ from runner.reporting.table import numbers
 from runner.store import Run, Sweep, open_run
 from runner.sweeps.finer_step import work_out
 from runner.sweeps.measurements import Measurements, measure_run, measure_sweep
-from runner.sweeps.tuning.key import Key
+from runner.sweeps.tuning.key import TunedKey
 from runner.sweeps.tuning.objective import Objective, best
 from runner.sweeps.tuning.study import Tuning, at_ends
 
@@ -50,7 +50,7 @@ class Trials:
     tuning: Tuning
 
     @property
-    def keys(self) -> Sequence[Key]:
+    def keys(self) -> Sequence[TunedKey]:
         """The tuned keys."""
         return self.tuning.study.keys
 
@@ -73,7 +73,7 @@ class Trials:
         """Return the value of an objective in each trial, shape (trials,)."""
         return np.array([trial.values[place] for trial in self.tuning.trials], dtype=float)
 
-    def params(self, key: Key) -> FloatArray:
+    def params(self, key: TunedKey) -> FloatArray:
         """Return the value of a key in each trial, shape (trials,)."""
         return np.array([trial.params[key.name] for trial in self.tuning.trials], dtype=float)
 
@@ -225,7 +225,7 @@ def _what(trials: Trials) -> Section:
         "repetitions counts. The same command gives the same trials, on however many processes."
     )
     header = ["key", *numbers("low", "high"), "scale", "values"]
-    blocks: list[Block] = [
+    blocks: list[ReportBlock] = [
         Table("Tuned keys with their ranges.", header, rows, Origin(command=study.command)),
         text,
     ]
@@ -275,7 +275,7 @@ def _front(trials: Trials) -> Section:
         f"The front has {len(front)} of {len(trials.good)} good trials: none of them gets better in one objective "
         "without another getting worse."
     )
-    blocks: list[Block] = [
+    blocks: list[ReportBlock] = [
         Text("Every objective chooses the same trial." if len(front) == 1 else text),
         Curves("Good trials and the Pareto front.", panels, columns=1 if len(objectives) == 2 else 2),
         Table("Trials on the front.", header, rows),
@@ -295,7 +295,7 @@ def _keys(trials: Trials) -> Section:
     return Section("Keys", [Curves("Good trials over the range of each key.", panels), _importance(trials)])
 
 
-def _importance(trials: Trials) -> Block:
+def _importance(trials: Trials) -> ReportBlock:
     from runner.sweeps.tuning.sampler import importances  # imports Optuna
 
     found = [
@@ -322,7 +322,7 @@ def _chosen(trials: Trials, runs: dict[int, Run]) -> Section:
     return Section("Chosen trial" if one else "Chosen by each objective", (), sections)
 
 
-def _trial(trials: Trials, place: int, run: Run) -> list[Block]:
+def _trial(trials: Trials, place: int, run: Run) -> list[ReportBlock]:
     params = trials.tuning.trials[place].params
     rows = [
         [key_label(key), number(params[key.name]), f"{number(key.low)} to {number(key.high)}"] for key in trials.keys

@@ -20,7 +20,7 @@ from runner.sweeps.run import Engine, make_missing, make_rules
 from runner.sweeps.writer import TraceKeeping
 
 
-class Change(Protocol):
+class HasOverrides(Protocol):
     """Overrides that both sides get.
 
     Attributes:
@@ -34,7 +34,7 @@ class Change(Protocol):
     def exact(self) -> bool: ...  # noqa: D102
 
 
-class Bench:
+class PairBench:
     """Simulates both sides of changes, and keeps what it has simulated.
 
     Args:
@@ -81,7 +81,9 @@ class Bench:
         """Number of the block of seeds for turning values, after those of all looks."""
         return int(1 << (LOOKS - 1))
 
-    def draw(self, changes: Sequence[Change], size: int, blocks: int, first: int = 0) -> list[tuple[Drawn, Drawn]]:
+    def draw(
+        self, changes: Sequence[HasOverrides], size: int, blocks: int, first: int = 0
+    ) -> list[tuple[Drawn, Drawn]]:
         """Return the draws of A and B for some changes; none if the time is over.
 
         Args:
@@ -99,16 +101,16 @@ class Bench:
         joined = [[join([self._drawn[cell] for cell in side]) for side in both] for both in cells]
         return [(a, b) for a, b in joined]
 
-    def names_of(self, change: Change) -> list[str]:
+    def names_of(self, change: HasOverrides) -> list[str]:
         """Return the runs of both sides of a change on the first block."""
         return [self._names[side[0]] for side in self._cells(change, self._size, 1) if side[0] in self._names]
 
-    def keep_traces(self, changes: Sequence[Change]) -> None:
+    def keep_traces(self, changes: Sequence[HasOverrides]) -> None:
         """Simulate some changes on the first block again, with their traces."""
         cells = [side[0] for change in changes for side in self._cells(change, self._size, 1)]
         self._simulate(list(dict.fromkeys(cells)), "all")
 
-    def _cells(self, change: Change, size: int, blocks: int, first: int = 0) -> list[list[Cell]]:
+    def _cells(self, change: HasOverrides, size: int, blocks: int, first: int = 0) -> list[list[Cell]]:
         """Return the runs of A, and of B, one for each block."""
         seeds = [self._question.seed + first + block for block in range(1 if change.exact else blocks)]
         repetitions = f"repetitions={1 if change.exact else size}"

@@ -9,7 +9,7 @@ _MINUTE = 60.0  # s
 
 
 @dataclass(frozen=True)
-class Budget:
+class ChallengeBudget:
     """What a challenge may cost.
 
     Attributes:
@@ -23,7 +23,7 @@ class Budget:
     text: str = ""
 
 
-def read_budget(text: str) -> Budget:
+def read_budget(text: str) -> ChallengeBudget:
     """Return the budget of a text such as "60s", "2min" or "12".
 
     Raises:
@@ -32,7 +32,7 @@ def read_budget(text: str) -> Budget:
     found = re.fullmatch(r"(\d+(?:\.\d+)?)\s*(s|min)?", text)
     if found and float(found[1]) > 0.0:
         if found[2]:
-            return Budget(seconds=float(found[1]) * (_MINUTE if found[2] == "min" else 1.0), text=text)
+            return ChallengeBudget(seconds=float(found[1]) * (_MINUTE if found[2] == "min" else 1.0), text=text)
         if found[1].isdecimal():
-            return Budget(variations=int(found[1]), text=f"{text} variation{'s' if int(text) > 1 else ''}")
+            return ChallengeBudget(variations=int(found[1]), text=f"{text} variation{'s' if int(text) > 1 else ''}")
     raise RunnerError(f"--budget: not a budget ('{text}'). Allowed: a time such as 60s, or a number of variations.")

@@ -17,7 +17,7 @@ _CLASSES = ("equivalent", "conditions")
 
 
 @dataclass(frozen=True)
-class Combined:
+class Combination:
     """Several changes of the asked case at once.
 
     Attributes:
@@ -35,7 +35,7 @@ class Combined:
     effect: float | None = None
 
 
-def combine(variations: Sequence[Variation], seed: int) -> Iterator[Combined]:
+def combine(variations: Sequence[Variation], seed: int) -> Iterator[Combination]:
     """Yield combinations of changes of equivalent choices and conditions, each change nearly equally often.
 
     The changes of a combination are of different families and set different keys.
@@ -62,7 +62,7 @@ def combine(variations: Sequence[Variation], seed: int) -> Iterator[Combined]:
             continue
         known.add(frozenset(chosen))
         parts = [some[place] for place in sorted(chosen)]
-        yield Combined(
+        yield Combination(
             [part.label for part in parts],
             [list(chain(*texts)) for texts in zip(*(part.sides for part in parts), strict=True)],
         )

@@ -9,8 +9,8 @@ from runner.base.arrays import FloatArray
 from runner.base.dotted_keys import get
 from runner.schema.bound import Bound
 from runner.statistics import compare_paired
-from runner.statistics.paired import Comparison
-from runner.statistics.scope import Tried
+from runner.statistics.paired import PairedComparison
+from runner.statistics.scope import TriedVariation
 from runner.store.run import Run
 from runner.sweeps.drawn import draws_nothing
 
@@ -65,7 +65,7 @@ def join(parts: "list[Drawn]") -> Drawn:
     )
 
 
-def compare_drawn(a: Drawn, b: Drawn, error: float | None) -> Tried:
+def compare_drawn(a: Drawn, b: Drawn, error: float | None) -> TriedVariation:
     """Return a variation as it was simulated.
 
     Args:
@@ -74,13 +74,15 @@ def compare_drawn(a: Drawn, b: Drawn, error: float | None) -> Tried:
         error: Integration error in the difference; None if it is unknown.
     """
     if not (a.has_metric and b.has_metric):
-        return Tried(None, "the runs have no such metric")
+        return TriedVariation(None, "the runs have no such metric")
     shares = [(float(np.mean(of_a)), float(np.mean(of_b))) for of_a, of_b in ((a.lost, b.lost), (a.spoilt, b.spoilt))]
     if np.isinf(a.values).all() and np.isinf(b.values).all() and not min(shares[0]):
-        return Tried(None, "neither side has a value")
+        return TriedVariation(None, "neither side has a value")
     found = compare_paired(a.values, b.values)
     exact = a.exact and b.exact
-    return Tried(Comparison(found.a, found.b, found.differences, error, exact=exact), "", shares[0], shares[1])
+    return TriedVariation(
+        PairedComparison(found.a, found.b, found.differences, error, exact=exact), "", shares[0], shares[1]
+    )
 
 
 def _does_not_follow(run: Run, metrics: dict[str, FloatArray], count: int) -> Mask:

@@ -16,12 +16,12 @@ from runner.sweeps.challenge.question import Class, Value, Variation
 _MOTION = ("trajectory", "robot")  # groups that all sides share if a goal is changed
 
 
-class LeftOutError(Exception):
+class NotApplicableError(Exception):
     """A variation that does not apply; its text is the reason."""
 
 
 @dataclass(frozen=True)
-class Change:
+class SidesChange:
     """A change of all sides.
 
     Attributes:
@@ -48,68 +48,70 @@ class Family:
     """
 
     kind: Class
-    change: Callable[[Case, Value], Change]
+    change: Callable[[Case, Value], SidesChange]
     key: str = ""
     neutral: float | None = None
     discrete: Callable[[Case], float] | None = None
 
 
-def _engine(case: Case, value: Value) -> Change:
+def _engine(case: Case, value: Value) -> SidesChange:
     kinds = {config.plant.kind for config in case.configs}
     if not all(config.takes_torques for config in case.configs):
-        raise LeftOutError("the plant is not driven by torques")
+        raise NotApplicableError("the plant is not driven by torques")
     if kinds == {value}:
-        raise LeftOutError("")
+        raise NotApplicableError("")
     sides = []
     for config in case.configs:
         own = PLANTS.features(str(value)).default_step(config.timing.tick, len(config.arm.stages))
         coarse = config.plant.step is not None and config.timing.step > own  # of an engine of higher order
         sides.append([f"plant={value}", *(["plant.step=null"] if coarse else [])])
-    return Change(f"the engine {value}", sides)
+    return SidesChange(f"the engine {value}", sides)
 
 
-def _step(case: Case, value: Value) -> Change:
+def _step(case: Case, value: Value) -> SidesChange:
     if any(not config.takes_torques and config.plant.step is None for config in case.configs):
-        raise LeftOutError("the plant integrates nothing")
+        raise NotApplicableError("the plant integrates nothing")
     divisor = max(2, math.ceil(1.0 / min(float(value), case.most_step) - 1e-9))
     steps = [config.timing.step / divisor for config in case.configs]
-    return Change(f"a step {divisor} times finer", [[f"plant.step={_text(step)}"] for step in steps])
+    return SidesChange(f"a step {divisor} times finer", [[f"plant.step={_text(step)}"] for step in steps])
 
 
-def _goal(case: Case, value: Value) -> Change:
+def _goal(case: Case, value: Value) -> SidesChange:
     _needs_ends(case)
     goals = case.goals
     if len(goals) < int(value):
-        raise LeftOutError(f"only {len(goals)} other goals lie within reach and away from singular configurations")
+        raise NotApplicableError(
+            f"only {len(goals)} other goals lie within reach and away from singular configurations"
+        )
     point = [round(float(each), 6) for each in goals[int(value) - 1]]
     return _all(case, f"the goal {_text(point)} m", [f"trajectory.goal={_text(point)}"])
 
 
-def _direction(case: Case, value: Value) -> Change:
+def _direction(case: Case, value: Value) -> SidesChange:
     _needs_ends(case)
     start, end = ([round(float(each), 9) for each in point] for point in ends_of(case.configs[0]))
     keys = [f"trajectory.start={_text(end)}", f"trajectory.goal={_text(start)}"]
     return _all(case, "the reversed direction", keys)
 
 
-def _velocity(case: Case, value: Value) -> Change:
+def _velocity(case: Case, value: Value) -> SidesChange:
     _skip_same(case, "noise.velocity", value)
     words = {"exact": "exact velocities", "finite_difference": "velocities by finite difference"}
     return _all(case, words.get(str(value), f"velocities by {value}"), [f"noise.velocity={value}"])
 
 
-def _noise_kind(case: Case, value: Value) -> Change:
+def _noise_kind(case: Case, value: Value) -> SidesChange:
     _skip_same(case, "noise.distribution", value)
     _needs_noise(case)
     factors = {("uniform", "gaussian"): 3.0**-0.5, ("gaussian", "uniform"): 3.0**0.5}
     old = str(case.values("noise.distribution")[0])
     if (old, value) not in factors:
-        raise LeftOutError(f"noise.distribution is {old}")
+        raise NotApplicableError(f"noise.distribution is {old}")
     same = _scaled(case, "noise.position", factors[old, str(value)])
-    return Change(f"{value} noise of the same variance", [[f"noise.distribution={value}", *own] for own in same])
+    return SidesChange(f"{value} noise of the same variance", [[f"noise.distribution={value}", *own] for own in same])
 
 
-def _duration(case: Case, value: Value) -> Change:
+def _duration(case: Case, value: Value) -> SidesChange:
     new = _scaled(case, "trajectory.duration", float(value))
     durations = case.values("trajectory.duration")
     for own, whole, motion in zip(new, case.values("duration"), durations, strict=True):
@@ -121,89 +123,91 @@ def _duration(case: Case, value: Value) -> Change:
         if one
         else f"{number(float(value))} times the duration"
     )
-    return Change(label, new)
+    return SidesChange(label, new)
 
 
-def _noise(case: Case, value: Value) -> Change:
+def _noise(case: Case, value: Value) -> SidesChange:
     _needs_noise(case)
-    return Change(f"noise times {number(float(value))}", _scaled(case, "noise.position", float(value)))
+    return SidesChange(f"noise times {number(float(value))}", _scaled(case, "noise.position", float(value)))
 
 
-def _torque_limit(case: Case, value: Value) -> Change:
+def _torque_limit(case: Case, value: Value) -> SidesChange:
     limits = case.values("torque_limits.max")
     if value == "own":
         own = case.values("robot.torque_limit")
         if None in own or own == limits:
-            raise LeftOutError("the robot states no own torque limit" if None in own else "")
+            raise NotApplicableError("the robot states no own torque limit" if None in own else "")
         label = f"the arm's own torque limit of {_amount(own[0], 'N m')}"
-        return Change(label, [[f"torque_limits.max={_text(each)}"] for each in own])
+        return SidesChange(label, [[f"torque_limits.max={_text(each)}"] for each in own])
     if None not in limits:
         label = f"{number(float(value))} of the torque limit"
-        return Change(label, _scaled(case, "torque_limits.max", float(value)))
+        return SidesChange(label, _scaled(case, "torque_limits.max", float(value)))
     if not case.peak > 0.0:
-        raise LeftOutError("the largest torque is unknown")
+        raise NotApplicableError("the largest torque is unknown")
     limit = float(f"{float(value) * case.peak:.4g}")
     label = f"a torque limit of {number(limit)} N m ({number(float(value), 2)} of the peak)"
     return _all(case, label, [f"torque_limits.max={_text(limit)}"])
 
 
-def _payload(case: Case, value: Value) -> Change:
+def _payload(case: Case, value: Value) -> SidesChange:
     if None in case.values("mismatch.payload") or None in case.values("robot.payload.mass"):
-        raise LeftOutError("the robot or the model error has no payload")
+        raise NotApplicableError("the robot or the model error has no payload")
     mass = float(f"{float(value) * case.configs[0].arm.model.mass:.3g}")
     changes: list[list[str]] = []
     for carried, known in zip(case.values("robot.payload.mass"), case.values("mismatch.payload"), strict=True):
         changes.append([f"robot.payload.mass={_text(carried + mass)}", f"mismatch.payload={_text(known - mass)}"])
-    return Change(f"an unknown payload of {number(mass)} kg", changes)
+    return SidesChange(f"an unknown payload of {number(mass)} kg", changes)
 
 
-def _friction(case: Case, value: Value) -> Change:
+def _friction(case: Case, value: Value) -> SidesChange:
     if not all(config.takes_torques for config in case.configs):
-        raise LeftOutError("the plant has no friction")
+        raise NotApplicableError("the plant has no friction")
     found = case.values("plant.friction.coulomb")
     if any(found):
-        raise LeftOutError("the arm has friction already")
+        raise NotApplicableError("the arm has friction already")
     if not case.peak > 0.0:
-        raise LeftOutError("the largest torque is unknown")
+        raise NotApplicableError("the largest torque is unknown")
     level = float(f"{float(value) * case.peak:.3g}")
     label = f"dry friction of {number(level)} N m"
     return _all(case, label, [f"plant.friction.coulomb={_text(level)}"])
 
 
-def _delay(case: Case, value: Value) -> Change:
+def _delay(case: Case, value: Value) -> SidesChange:
     if any(isinstance(known, Mapping) or known is None for known in case.values("plant.computation.delay")):
-        raise LeftOutError("the plant has no delay, or one for each stage")
+        raise NotApplicableError("the plant has no delay, or one for each stage")
     changes = [[f"plant.computation.delay={known + int(value)}"] for known in case.values("plant.computation.delay")]
     tick = case.configs[0].timing.tick
-    return Change(f"{number(1e3 * int(value) * tick)} ms more delay", changes)
+    return SidesChange(f"{number(1e3 * int(value) * tick)} ms more delay", changes)
 
 
-def _period(case: Case, value: Value) -> Change:
+def _period(case: Case, value: Value) -> SidesChange:
     new = _scaled(case, "controller.period", float(value))
     period = _times(case.values("controller.period")[0], float(value))
-    return Change(f"a control period of {_amount(period, 's')}", new)
+    return SidesChange(f"a control period of {_amount(period, 's')}", new)
 
 
-def _model_error(case: Case, value: Value) -> Change:
+def _model_error(case: Case, value: Value) -> SidesChange:
     known = case.values("mismatch.spread")
     if None in known:
-        raise LeftOutError("the model error has no spread")
+        raise NotApplicableError("the model error has no spread")
     if max(known) >= float(value):
-        raise LeftOutError("the masses are drawn as widely already")
+        raise NotApplicableError("the masses are drawn as widely already")
     return _all(
         case, f"masses drawn within {number(100.0 * float(value))} %", [f"mismatch.spread={_text(float(value))}"]
     )
 
 
-def _gain(case: Case, value: Value) -> Change:
-    return Change(f"{number(float(value))} times the main gain", _scaled(case, "controller.natural_frequency", value))
+def _gain(case: Case, value: Value) -> SidesChange:
+    return SidesChange(
+        f"{number(float(value))} times the main gain", _scaled(case, "controller.natural_frequency", value)
+    )
 
 
-def _gain_of(place: int) -> Callable[[Case, Value], Change]:
-    def change(case: Case, value: Value) -> Change:
+def _gain_of(place: int) -> Callable[[Case, Value], SidesChange]:
+    def change(case: Case, value: Value) -> SidesChange:
         scaled = _scaled(case, "controller.natural_frequency", value)
         label = f"{number(float(value))} times the main gain of only {case.sides[place].name}"
-        return Change(label, [own if side == place else [] for side, own in enumerate(scaled)])
+        return SidesChange(label, [own if side == place else [] for side, own in enumerate(scaled)])
 
     return change
 
@@ -240,15 +244,15 @@ def family_of(variation: Variation) -> Family | None:
     return found[variation.place] if found else None
 
 
-def _all(case: Case, label: str, overrides: Sequence[str]) -> Change:
-    return Change(label, [list(overrides) for _ in case.configs])
+def _all(case: Case, label: str, overrides: Sequence[str]) -> SidesChange:
+    return SidesChange(label, [list(overrides) for _ in case.configs])
 
 
 def _scaled(case: Case, key: str, factor: Value) -> list[list[str]]:
     """Return the overrides that scale a number, a list or the values of stages in each config."""
     values = case.values(key)
     if None in values:
-        raise LeftOutError(f"{key} is not set")
+        raise NotApplicableError(f"{key} is not set")
     return [list(_scaled_texts(key, value, float(factor))) for value in values]
 
 
@@ -278,22 +282,22 @@ def _text(value: Any) -> str:
 def _skip_same(case: Case, key: str, value: Value) -> None:
     found = case.values(key)
     if None in found:
-        raise LeftOutError(f"{key} is not set")
+        raise NotApplicableError(f"{key} is not set")
     if set(found) == {value}:
-        raise LeftOutError("")
+        raise NotApplicableError("")
 
 
 def _needs_noise(case: Case) -> None:
     for value in case.values("noise.position"):
         leaves = list(value.values()) if isinstance(value, Mapping) else value if isinstance(value, list) else [value]
         if not any(leaves):
-            raise LeftOutError("noise.position is 0")
+            raise NotApplicableError("noise.position is 0")
 
 
 def _needs_ends(case: Case) -> None:
     resolved = [config.resolved["trajectory"] for config in case.configs]
     if any(not isinstance(each, Mapping) or "goal" not in each or "start" not in each for each in resolved):
-        raise LeftOutError("the motion has no start and goal of the tip")
+        raise NotApplicableError("the motion has no start and goal of the tip")
     first = case.configs[0].resolved
     if any(own[group] != first[group] for own in (config.resolved for config in case.configs) for group in _MOTION):
-        raise LeftOutError("the motions or arms of the sides differ")
+        raise NotApplicableError("the motions or arms of the sides differ")

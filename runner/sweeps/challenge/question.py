@@ -92,7 +92,7 @@ class Variation:
 
 
 @dataclass(frozen=True)
-class LeftOut:
+class LeftOutVariation:
     """A variation that does not apply or cannot be simulated.
 
     Attributes:

@@ -18,12 +18,12 @@ from runner.base.errors import ConfigError, RunnerError
 from runner.base.quantities import ROUNDING
 from runner.config.compose.composer import Composer
 from runner.statistics.conclusion import ALPHA, larger_median
-from runner.statistics.paired import Comparison
+from runner.statistics.paired import PairedComparison
 from runner.statistics.scope import (
     LOOKS,
-    Effect,
-    Judged,
-    Tried,
+    AskedEffect,
+    JudgedVariation,
+    TriedVariation,
     came_back,
     first_pairs,
     judge,
@@ -34,27 +34,32 @@ from runner.statistics.turning import PAIRS, POINTS, Turn, find_turns
 from runner.store.kinds import note
 from runner.store.seal import DamagedError
 from runner.sweeps.at_work import at_work
-from runner.sweeps.challenge.bench import Bench
-from runner.sweeps.challenge.budget import Budget
+from runner.sweeps.challenge.bench import PairBench
+from runner.sweeps.challenge.budget import ChallengeBudget
 from runner.sweeps.challenge.case import Case, check_case
 from runner.sweeps.challenge.changed import Changed, changed_keys
-from runner.sweeps.challenge.combinations import Combined, combine
+from runner.sweeps.challenge.combinations import Combination, combine
 from runner.sweeps.challenge.drawn import Drawn, compare_drawn
-from runner.sweeps.challenge.families import Change, Family, LeftOutError, family_of
-from runner.sweeps.challenge.question import LeftOut, Question, Value, Variation
-from runner.sweeps.challenge.stored import Challenge, Found, Turning, open_challenge, place_of
+from runner.sweeps.challenge.families import Family, NotApplicableError, SidesChange, family_of
+from runner.sweeps.challenge.question import LeftOutVariation, Question, Value, Variation
+from runner.sweeps.challenge.stored import AnsweredVariation, Challenge, Turning, open_challenge, place_of
 from runner.sweeps.challenge.table import list_variations
 from runner.sweeps.drawn import draws_nothing
 from runner.sweeps.job import check_job
 from runner.sweeps.run import Engine
 
-_Checked = TypeVar("_Checked", Variation, Combined)
+_Checked = TypeVar("_Checked", Variation, Combination)
 _ENDS = ("reversed", "vanishes")
 _AT_ONCE = 4  # variations between two looks at the clock
 
 
 def challenge(
-    question: Question, values: dict[str, list[Value]], outputs: Path, engine: Engine, command: str, budget: Budget
+    question: Question,
+    values: dict[str, list[Value]],
+    outputs: Path,
+    engine: Engine,
+    command: str,
+    budget: ChallengeBudget,
 ) -> Challenge:
     """Execute the missing runs of a challenge and store it.
 
@@ -83,9 +88,9 @@ def challenge(
     kept = []
     for place, one in enumerate(variations):
         try:
-            kept.append(Found(_checked(plan, place, one)))
+            kept.append(AnsweredVariation(_checked(plan, place, one)))
         except ConfigError as error:
-            left.append(LeftOut(one.family, one.value, error.problems[0], one.kind, True))
+            left.append(LeftOutVariation(one.family, one.value, error.problems[0], one.kind, True))
     combined = list(_combine([one.variation for one in kept], question.seed, case, composer))
     if not kept:
         raise RunnerError("challenge: no variation applies. Allowed: --vary KEY=A,B.")
@@ -94,7 +99,7 @@ def challenge(
     made = Challenge(folder, question, kept, left, command, combined=combined, budget=budget.text)
     with at_work(folder, exclusive=True) as name:
         keys = changed_keys([*keys, "seed=", "repetitions="])
-        bench = Bench(case, question, composer, keys, folder, outputs, engine, name)
+        bench = PairBench(case, question, composer, keys, folder, outputs, engine, name)
         has_ended = _has_ended(made)
         if not has_ended:
             made.write(bench.jobs)
@@ -128,7 +133,7 @@ def _checked(plan: Changed, place: int, changed: _Checked) -> _Checked:
     return replace(changed, exact=all(draws_nothing(one.resolved) for one in composed))
 
 
-def _combine(variations: Sequence[Variation], seed: int, case: Case, composer: Composer) -> Iterator[Combined]:
+def _combine(variations: Sequence[Variation], seed: int, case: Case, composer: Composer) -> Iterator[Combination]:
     """Yield the combinations that can be simulated, with the knowledge if anything is drawn."""
     combined = list(combine(variations, seed))
     keys = changed_keys([text for one in variations for text in chain(*one.sides)])
@@ -142,10 +147,10 @@ def _combine(variations: Sequence[Variation], seed: int, case: Case, composer: C
 class _Runner:
     """The parts of a challenge, in the order of the budget."""
 
-    def __init__(self, case: Case, made: Challenge, bench: Bench, budget: Budget) -> None:
+    def __init__(self, case: Case, made: Challenge, bench: PairBench, budget: ChallengeBudget) -> None:
         self._case, self._made, self._bench, self._budget = case, made, bench, budget
         self._question = made.question
-        self._tried: dict[int, Tried] = {}
+        self._tried: dict[int, TriedVariation] = {}
 
     def run(self) -> Challenge:
         """Return the challenge with all words that the budget allows."""
@@ -180,7 +185,7 @@ class _Runner:
             if found is None:
                 raise RunnerError(f"challenge: the asked case cannot be asked again: {one.reason}.")
             self._scale = _scale(found)
-            asked = Effect(question.sign, 0.0, self._scale, question.is_fraction)
+            asked = AskedEffect(question.sign, 0.0, self._scale, question.is_fraction)
             (fresh,) = judge([one], replace(asked, size=found.difference / asked.of(found)), ALPHA)
             level = ALPHA / LOOKS if question.sign else ALPHA
             back = came_back(found, question.sign, level, question.is_fraction) is not None
@@ -188,41 +193,41 @@ class _Runner:
                 break
         return replace(self._made, fresh=fresh, came_back=back)
 
-    def _asked(self, made: Challenge) -> Effect:
+    def _asked(self, made: Challenge) -> AskedEffect:
         size = made.fresh.effect if made.fresh and made.fresh.effect is not None else 0.0
-        return Effect(self._question.sign, size, self._scale, self._question.is_fraction)
+        return AskedEffect(self._question.sign, size, self._scale, self._question.is_fraction)
 
     @property
     def _first(self) -> int:
         count = len(self._made.found) if self._budget.variations is None else self._budget.variations
         return first_pairs(min(count, len(self._made.found)))
 
-    def _ask(self, places: Sequence[int], pairs: int) -> list[Tried]:
+    def _ask(self, places: Sequence[int], pairs: int) -> list[TriedVariation]:
         """Return some variations with a number of pairs; fewer if the time is over."""
         _tell(f"{len(places)} variation{'s' if len(places) > 1 else ''}, {pairs} pairs each")
         chosen = [self._made.found[place].variation for place in places]
         at_once = len(chosen) if self._budget.seconds is None else _AT_ONCE
-        tried: list[Tried] = []
+        tried: list[TriedVariation] = []
         for start in range(0, len(chosen), at_once):
             tried += self._compare(chosen[start : start + at_once], pairs)
         self._tried.update(zip(places, tried, strict=False))
         return tried
 
-    def _compare(self, variations: Sequence[Variation], pairs: int) -> list[Tried]:
+    def _compare(self, variations: Sequence[Variation], pairs: int) -> list[TriedVariation]:
         draws = self._bench.draw(variations, self._first, pairs // self._first)
         errors = [self._question.error if one.family != "step" else None for one in variations]
         return [compare_drawn(a, b, error) for (a, b), error in zip(draws, errors, strict=False)]
 
-    def _described(self, place: int, judged: Sequence[Judged]) -> Found:
+    def _described(self, place: int, judged: Sequence[JudgedVariation]) -> AnsweredVariation:
         found = self._made.found[place]
         if place >= len(judged):
             return found
         tried = self._tried[place]
         medians = tried.comparison.medians if tried.comparison else None
         hashes = self._bench.names_of(found.variation)
-        return Found(found.variation, judged[place], medians, hashes, tried.reason)
+        return AnsweredVariation(found.variation, judged[place], medians, hashes, tried.reason)
 
-    def _turnings(self, made: Challenge, asked: Effect) -> list[Turning]:
+    def _turnings(self, made: Challenge, asked: AskedEffect) -> list[Turning]:
         found = []
         ends = _ends(made)
         if ends:
@@ -234,7 +239,7 @@ class _Runner:
                 found.append(turning)
         return found
 
-    def _turning(self, made: Challenge, place: int, asked: Effect) -> Turning | None:
+    def _turning(self, made: Challenge, place: int, asked: AskedEffect) -> Turning | None:
         """Return the turning values between the asked case and a variation; None if the time is over."""
         variation = made.found[place].variation
         family = family_of(variation)
@@ -245,12 +250,12 @@ class _Runner:
         vanished: dict[float, bool] = {}
 
         def ask(values: Sequence[float]) -> list[FloatArray]:
-            changes: list[Change] = []
+            changes: list[SidesChange] = []
             try:
                 for value in values:
                     changes.append(replace(family.change(self._case, value), exact=variation.exact))
                 draws = self._bench.draw(changes, PAIRS, 1, self._bench.turning_block)
-            except (LeftOutError, ConfigError):  # a value between two that can be simulated cannot
+            except (NotApplicableError, ConfigError):  # a value between two that can be simulated cannot
                 return []
             tried = [compare_drawn(a, b, self._question.error) for a, b in draws]
             for value, one in zip(values, tried, strict=False):
@@ -281,7 +286,7 @@ class _Runner:
             allowed = np.linspace(points[0], points[-1], count + 1).tolist()
         return points, allowed
 
-    def _described_together(self, made: Challenge, asked: Effect) -> list[Combined]:
+    def _described_together(self, made: Challenge, asked: AskedEffect) -> list[Combination]:
         """Return the combinations with their effects; the budget may cut them."""
         most = self._budget.variations
         count = len(made.combined) if most is None else max(0, most - len(made.found))
@@ -300,12 +305,12 @@ class _Runner:
 
     def _draw_points(self, places: Sequence[int]) -> None:
         """Simulate the first points of all continuous choices together."""
-        changes: list[Change] = []
+        changes: list[SidesChange] = []
         for variation in (self._made.found[place].variation for place in places):
             family = family_of(variation)
             if family is None or family.neutral is None or family.discrete is not None:
                 continue
-            with contextlib.suppress(LeftOutError):
+            with contextlib.suppress(NotApplicableError):
                 changes += [replace(family.change(self._case, value), exact=variation.exact)
                             for value in self._points(variation, family)[0]]  # fmt: skip
         if changes and self._budget.seconds is None:
@@ -323,7 +328,7 @@ def _tell(text: str) -> None:
     print(f"runner: {text}", file=sys.stderr)
 
 
-def _effect(one: Found) -> float:
+def _effect(one: AnsweredVariation) -> float:
     return one.judged.effect if one.judged and one.judged.effect is not None else 0.0
 
 
@@ -344,7 +349,7 @@ def _ends(made: Challenge) -> list[int]:
     return sorted(nearest.values())
 
 
-def _rank(one: Found, neutral: float) -> tuple[bool, float]:
+def _rank(one: AnsweredVariation, neutral: float) -> tuple[bool, float]:
     is_reversed = one.judged is not None and one.judged.word == "reversed"
     return not is_reversed, abs(float(one.variation.value) - neutral)
 
@@ -362,7 +367,7 @@ def _differences(a: Drawn, b: Drawn) -> FloatArray:
     return np.where(failed, np.inf, np.where(failed, 0.0, b.values) - np.where(failed, 0.0, a.values))
 
 
-def _scale(found: Comparison) -> float | None:
+def _scale(found: PairedComparison) -> float | None:
     """Return the value that differences are relative to if the metric may be zero, null or signed; else None."""
     both = np.stack([found.a, found.b])
     return None if (np.isfinite(both) & (both > 0.0)).all() else max(larger_median(found), ROUNDING)

@@ -9,20 +9,20 @@ from pathlib import Path
 from typing import Any
 
 from runner.base.atomic import refuse_links, write_atomically
-from runner.statistics.scope import Judged
+from runner.statistics.scope import JudgedVariation
 from runner.statistics.turning import Turn
 from runner.store.kinds import KINDS
 from runner.store.seal import DamagedError, read_json, sealed_json
 from runner.store.sweep import write_jobs
-from runner.sweeps.challenge.combinations import Combined
-from runner.sweeps.challenge.question import LeftOut, Question, Side, Variation
+from runner.sweeps.challenge.combinations import Combination
+from runner.sweeps.challenge.question import LeftOutVariation, Question, Side, Variation
 
 _FILE = KINDS["challenge"].files[0]
 _REMEDY = "the challenge's command writes it again"
 
 
 @dataclass(frozen=True)
-class Found:
+class AnsweredVariation:
     """A variation with what was found.
 
     Attributes:
@@ -34,7 +34,7 @@ class Found:
     """
 
     variation: Variation
-    judged: Judged | None = None
+    judged: JudgedVariation | None = None
     medians: tuple[float | None, float | None] | None = None
     hashes: Sequence[str] = ()
     reason: str = ""
@@ -80,13 +80,13 @@ class Challenge:
 
     folder: Path
     question: Question
-    found: Sequence[Found]
-    left_out: Sequence[LeftOut]
+    found: Sequence[AnsweredVariation]
+    left_out: Sequence[LeftOutVariation]
     command: str
-    fresh: Judged | None = None
+    fresh: JudgedVariation | None = None
     came_back: bool = False
     turnings: Sequence[Turning] = ()
-    combined: Sequence[Combined] = ()
+    combined: Sequence[Combination] = ()
     ended: bool = False
     budget: str = ""
     seconds: float = 0.0
@@ -97,7 +97,7 @@ class Challenge:
         return (self.folder / _FILE).exists()
 
     @property
-    def cut(self) -> list[Found]:
+    def cut(self) -> list[AnsweredVariation]:
         """The variations that the budget cut."""
         return [one for one in self.found if one.judged is None] if self.came_back else []
 
@@ -124,7 +124,9 @@ def _plain(value: Any) -> Any:
     return None if isinstance(value, float) and not math.isfinite(value) else value
 
 
-def place_of(outputs: Path, question: Question, found: Sequence[Found], left: Sequence[LeftOut]) -> Path:
+def place_of(
+    outputs: Path, question: Question, found: Sequence[AnsweredVariation], left: Sequence[LeftOutVariation]
+) -> Path:
     """Return the folder of a challenge, named by its question and list of variations."""
     asked = asdict(replace(question, config_dirs=(), asks=()))
     content = [asked, [asdict(one.variation) for one in found], [asdict(one) for one in left]]
@@ -156,17 +158,17 @@ def _read(folder: Path, content: dict[str, Any]) -> Challenge:
         folder,
         Question(**asked),
         [_found(one) for one in content["found"]],
-        [LeftOut(**one) for one in content["left_out"]],
+        [LeftOutVariation(**one) for one in content["left_out"]],
         fresh=_judged(content["fresh"]),
-        combined=[Combined(**one) for one in content["combined"]],
+        combined=[Combination(**one) for one in content["combined"]],
         turnings=[Turning(**{**one, "turns": [_turn(turn) for turn in one["turns"]]}) for one in content["turnings"]],
         **known,
     )
 
 
-def _found(one: dict[str, Any]) -> Found:
+def _found(one: dict[str, Any]) -> AnsweredVariation:
     medians = one["medians"]
-    return Found(
+    return AnsweredVariation(
         Variation(**one["variation"]),
         _judged(one["judged"]),
         None if medians is None else (medians[0], medians[1]),
@@ -175,11 +177,11 @@ def _found(one: dict[str, Any]) -> Found:
     )
 
 
-def _judged(one: dict[str, Any] | None) -> Judged | None:
+def _judged(one: dict[str, Any] | None) -> JudgedVariation | None:
     if one is None:
         return None
     ratio = one["log_ratio"]
-    return Judged(**{**one, "log_ratio": None if ratio is None else tuple(ratio)})
+    return JudgedVariation(**{**one, "log_ratio": None if ratio is None else tuple(ratio)})
 
 
 def _turn(one: dict[str, Any]) -> Turn:

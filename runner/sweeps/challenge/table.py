@@ -12,8 +12,8 @@ from runner.base.errors import ConfigError, RunnerError, unknown
 from runner.base.paths import conf_dir
 from runner.schema.model import StrictModel
 from runner.sweeps.challenge.case import Case
-from runner.sweeps.challenge.families import FAMILIES, Change, Family, LeftOutError
-from runner.sweeps.challenge.question import CLASSES, LeftOut, Value, Variation
+from runner.sweeps.challenge.families import FAMILIES, Family, NotApplicableError, SidesChange
+from runner.sweeps.challenge.question import CLASSES, LeftOutVariation, Value, Variation
 
 GROUP = "challenge"
 _STANDARD = "standard"
@@ -87,14 +87,14 @@ def change_values(values: Values, vary: Sequence[str], without: Sequence[str]) -
     return found
 
 
-def list_variations(case: Case, values: Values) -> tuple[list[Variation], list[LeftOut]]:
+def list_variations(case: Case, values: Values) -> tuple[list[Variation], list[LeftOutVariation]]:
     """Return the variations of a case in the order of the budget, and those that do not apply.
 
     Raises:
         RunnerError: if there are too many, or a key does not exist.
     """
     found: list[Variation] = []
-    left: list[LeftOut] = []
+    left: list[LeftOutVariation] = []
     for name, some in values.items():
         if name not in FAMILIES:
             _check_key(case, name)
@@ -102,9 +102,9 @@ def list_variations(case: Case, values: Values) -> tuple[list[Variation], list[L
             for place, family in enumerate(FAMILIES.get(name, [Family("conditions", _setting(name), name)])):
                 try:
                     change = family.change(case, value)
-                except LeftOutError as error:
+                except NotApplicableError as error:
                     if str(error):  # not the asked value itself
-                        left.append(LeftOut(name, value, str(error), family.kind))
+                        left.append(LeftOutVariation(name, value, str(error), family.kind))
                     continue
                 except (TypeError, ValueError):
                     raise RunnerError(f"challenge.{name}: not a value of this family ({value!r}).") from None
@@ -128,14 +128,14 @@ def _check_key(case: Case, key: str) -> None:
         raise RunnerError(unknown("key", key, known, "--vary"))
 
 
-def _setting(key: str) -> Callable[[Case, Value], Change]:
-    def change(case: Case, value: Value) -> Change:
-        return Change(f"{key}={value}", [[f"{key}={value}"] for _ in case.sides])
+def _setting(key: str) -> Callable[[Case, Value], SidesChange]:
+    def change(case: Case, value: Value) -> SidesChange:
+        return SidesChange(f"{key}={value}", [[f"{key}={value}"] for _ in case.sides])
 
     return change
 
 
-def _distinct(left: Sequence[LeftOut]) -> Iterator[LeftOut]:
+def _distinct(left: Sequence[LeftOutVariation]) -> Iterator[LeftOutVariation]:
     """Yield the first of several that are left out for the same reason."""
     seen: set[tuple[str, str]] = set()
     for one in left:

@@ -14,7 +14,7 @@ from optuna.trial import FrozenTrial
 from runner.base.bounded_json import decode_json
 from runner.base.errors import StoreError, describe_write_error
 from runner.store.seal import DamagedError, Lines
-from runner.sweeps.tuning.key import Key
+from runner.sweeps.tuning.key import TunedKey
 from runner.sweeps.tuning.objective import Objective, Trial
 from runner.sweeps.tuning.sampler import make_optuna_trial, read_ended
 
@@ -36,7 +36,7 @@ class Journal:
         StoreError: if the file cannot be written.
     """
 
-    def __init__(self, path: Path, keys: Sequence[Key], objectives: Sequence[Objective]) -> None:
+    def __init__(self, path: Path, keys: Sequence[TunedKey], objectives: Sequence[Objective]) -> None:
         self._path, self._keys = path, keys
         self.history: list[FrozenTrial] = []
         self.trials: list[Trial] = []

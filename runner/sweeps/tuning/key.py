@@ -22,7 +22,7 @@ _DIGITS_ON_GRID = 12
 
 
 @dataclass(frozen=True)
-class Key:
+class TunedKey:
     """Tuned key.
 
     Attributes:
@@ -81,7 +81,7 @@ class Key:
         return f"{self.name}={value!r}"
 
 
-def read_key(override: Override) -> Key | None:
+def read_key(override: Override) -> TunedKey | None:
     """Return the key that an override tunes, or None if the override gives one value.
 
     Raises:
@@ -93,11 +93,11 @@ def read_key(override: Override) -> Key | None:
     name = override.key_or_group
     if isinstance(found, IntervalSweep) and found.tags <= {"log"}:
         ends: tuple[Any, Any] = (found.start, found.end)
-        return Key(name, *ends, step=None, log="log" in found.tags, integer=isinstance(ends[0], int))
+        return TunedKey(name, *ends, step=None, log="log" in found.tags, integer=isinstance(ends[0], int))
     if isinstance(found, RangeSweep) and not found.tags:
         values = range_values(override)
         if len(values) < 2:
             raise ConfigError(f"{name}: its range is empty; {found.start} to {found.stop} has no two values")
         integer = all(isinstance(value, int) for value in values)
-        return Key(name, values[0], values[-1], step=abs(found.step), log=False, integer=integer)
+        return TunedKey(name, values[0], values[-1], step=abs(found.step), log=False, integer=integer)
     raise ConfigError(f"'{override.input_line}' is not a range to tune in; ranges: {RANGES}")

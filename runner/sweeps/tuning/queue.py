@@ -17,8 +17,8 @@ from runner.sweeps.queue import Queue
 from runner.sweeps.tuning.journal import Journal
 from runner.sweeps.tuning.objective import Trial
 from runner.sweeps.tuning.sampler import propose
-from runner.sweeps.tuning.study import Study
-from runner.sweeps.work import Chunk, Report
+from runner.sweeps.tuning.study import TuningDefinition
+from runner.sweeps.work import Chunk, ChunkResult
 from runner.sweeps.writer import Rules
 
 
@@ -37,7 +37,9 @@ class TrialQueue(Queue):
         seed: Seed of the search.
     """
 
-    def __init__(self, study: Study, journal: Journal, loader: Composer, rules: Rules, trials: int, seed: int) -> None:
+    def __init__(
+        self, study: TuningDefinition, journal: Journal, loader: Composer, rules: Rules, trials: int, seed: int
+    ) -> None:
         self._runs: list[str] = []
         self._costs_of_runs: list[int] = []
         self._cell_of: dict[str, int] = {}
@@ -46,7 +48,7 @@ class TrialQueue(Queue):
         self._trials, self._seed = trials, seed
         self._started = deque[Trial]()  # without values
         self._configs: dict[int, Composed] = {}
-        self._ends: dict[str, store.Outcome] = {}
+        self._ends: dict[str, store.RunOutcome] = {}
 
     @property
     def left(self) -> int:
@@ -64,12 +66,12 @@ class TrialQueue(Queue):
             self._settle()
         return super().take(workers)
 
-    def learn(self, report: Report) -> None:
+    def learn(self, report: ChunkResult) -> None:
         """Update the time for a tick from the report of a chunk, and add the outcomes of its runs."""
         super().learn(report)
         self.note(report.outcomes)
 
-    def note(self, outcomes: Sequence[store.Outcome]) -> None:
+    def note(self, outcomes: Sequence[store.RunOutcome]) -> None:
         """Add the outcomes of runs.
 
         Raises:

@@ -25,10 +25,10 @@ from runner.sweeps.check import Checked, check
 from runner.sweeps.plan import Grid, Item, Listed, Plan
 from runner.sweeps.run import Engine, clean, make_jobs, make_missing, make_rules
 from runner.sweeps.tuning.journal import Journal
-from runner.sweeps.tuning.key import RANGES, Key, read_key
+from runner.sweeps.tuning.key import RANGES, TunedKey, read_key
 from runner.sweeps.tuning.objective import Objective, Trial, best
 from runner.sweeps.tuning.queue import TrialQueue
-from runner.sweeps.tuning.study import JOURNAL, Fresh, Study, Tuning
+from runner.sweeps.tuning.study import JOURNAL, Fresh, Tuning, TuningDefinition
 from runner.sweeps.typed import axis_names
 from runner.sweeps.writer import Rules
 
@@ -76,7 +76,7 @@ def tune(
     shown = [text for text in shared if is_simulated(text)]
     if checked.first.sweep.part is not None:
         raise ConfigError("sweep.part: a tuning has no parts, because its trials follow from each other; leave it out")
-    study = Study(shown, keys, objectives, at_once, command)
+    study = TuningDefinition(shown, keys, objectives, at_once, command)
     seed = cast(int, plan.composed(0).resolved["seed"])
     store.prepare(checked.outputs)
     folder = study.folder(checked.outputs, checked.names)
@@ -109,7 +109,12 @@ def _work_off(plan: Plan, checked: Checked, queue: TrialQueue, engine: Engine, e
 
 
 def _run_on_fresh_seed(
-    study: Study, trials: Sequence[Trial], shared: Sequence[str], loader: Composer, rules: Rules, engine: Engine
+    study: TuningDefinition,
+    trials: Sequence[Trial],
+    shared: Sequence[str],
+    loader: Composer,
+    rules: Rules,
+    engine: Engine,
 ) -> Fresh | None:
     """Simulate the default config and the chosen trial on another seed; return their runs, or None if neither can run.
 
@@ -137,14 +142,14 @@ def _run_on_fresh_seed(
     return Fresh(first, *checked.names)
 
 
-def _read(overrides: Sequence[str], config_dirs: Sequence[Path]) -> tuple[list[str], list[Key]]:
+def _read(overrides: Sequence[str], config_dirs: Sequence[Path]) -> tuple[list[str], list[TunedKey]]:
     """Return the overrides that all trials share, as typed, and the keys to tune."""
     try:
         parsed = OverridesParser.create().parse_overrides(prepare(overrides))
     except COMPOSITION_ERRORS as error:
         raise explain(error) from None
     fixed: list[str] = []
-    keys: dict[str, Key] = {}
+    keys: dict[str, TunedKey] = {}
     problems: list[str] = []
     for text, override in zip(overrides, parsed, strict=True):
         try:
@@ -167,7 +172,7 @@ def _read(overrides: Sequence[str], config_dirs: Sequence[Path]) -> tuple[list[s
     return fixed, list(keys.values())
 
 
-def _check_numbers(plan: Plan, keys: Sequence[Key]) -> None:
+def _check_numbers(plan: Plan, keys: Sequence[TunedKey]) -> None:
     """Check that keys have a number or null as their value; a later check rejects unknown keys and proposes names."""
     resolved = plan.composed(0).resolved
     problems = []
@@ -181,7 +186,7 @@ def _check_numbers(plan: Plan, keys: Sequence[Key]) -> None:
         raise ConfigError(problems)
 
 
-def _check_ranges(loader: Composer, shared: Sequence[str], keys: Sequence[Key]) -> tuple[Plan, Checked]:
+def _check_ranges(loader: Composer, shared: Sequence[str], keys: Sequence[TunedKey]) -> tuple[Plan, Checked]:
     """Check the configs at both ends of the ranges and between; return the last plan and the result of its check."""
     problems: dict[str, None] = {}
     names: list[str] = []

@@ -8,7 +8,7 @@ import optuna
 from optuna.distributions import BaseDistribution, FloatDistribution, IntDistribution
 from optuna.trial import FrozenTrial, TrialState, create_trial
 
-from runner.sweeps.tuning.key import Key
+from runner.sweeps.tuning.key import TunedKey
 from runner.sweeps.tuning.objective import Objective, Trial
 
 SPREAD = 10
@@ -19,7 +19,7 @@ _FEWEST_FOR_IMPORTANCE = 20  # trials; the best tenth is compared with all trial
 
 
 def propose(
-    keys: Sequence[Key],
+    keys: Sequence[TunedKey],
     objectives: Sequence[Objective],
     history: Sequence[FrozenTrial],
     under_way: Sequence[Mapping[str, float]],
@@ -52,7 +52,7 @@ def propose(
     return {key.name: key.value(found[key.name]) for key in keys}
 
 
-def _spread(keys: Sequence[Key], objectives: Sequence[Objective], number: int, seed: int) -> dict[str, float]:
+def _spread(keys: Sequence[TunedKey], objectives: Sequence[Objective], number: int, seed: int) -> dict[str, float]:
     """Return a point of the sequence by its number; point 0, before the start of the sequence, is random."""
     with warnings.catch_warnings():
         warnings.simplefilter("ignore", optuna.exceptions.ExperimentalWarning)
@@ -61,7 +61,7 @@ def _spread(keys: Sequence[Key], objectives: Sequence[Objective], number: int, s
     return asked[-1].params
 
 
-def make_optuna_trial(keys: Sequence[Key], trial: Trial) -> FrozenTrial:
+def make_optuna_trial(keys: Sequence[TunedKey], trial: Trial) -> FrozenTrial:
     """Return a finished trial as an Optuna object; a failed trial violates a constraint and therefore ranks last."""
     return create_trial(
         params=dict(trial.params),
@@ -77,7 +77,9 @@ def read_ended(frozen: FrozenTrial) -> Trial:
     return Trial(frozen.params, tuple(frozen.values), frozen.user_attrs["run"], frozen.user_attrs["failure"])
 
 
-def importances(keys: Sequence[Key], trials: Sequence[Trial], objective: Objective, place: int) -> dict[str, float]:
+def importances(
+    keys: Sequence[TunedKey], trials: Sequence[Trial], objective: Objective, place: int
+) -> dict[str, float]:
     """Return the importance of each key for a place among the best tenth, as fractions; empty for too few trials.
 
     Args:
@@ -103,15 +105,15 @@ def _study(objectives: Sequence[Objective], sampler: optuna.samplers.BaseSampler
     return optuna.create_study(directions=[objective.direction for objective in objectives], sampler=sampler)
 
 
-def _under_way(keys: Sequence[Key], params: Mapping[str, float]) -> FrozenTrial:
+def _under_way(keys: Sequence[TunedKey], params: Mapping[str, float]) -> FrozenTrial:
     return create_trial(state=TrialState.RUNNING, params=dict(params), distributions=_distributions(keys))
 
 
-def _distributions(keys: Sequence[Key]) -> dict[str, BaseDistribution]:
+def _distributions(keys: Sequence[TunedKey]) -> dict[str, BaseDistribution]:
     return {key.name: _distribution(key) for key in keys}
 
 
-def _distribution(key: Key) -> BaseDistribution:
+def _distribution(key: TunedKey) -> BaseDistribution:
     if key.integer:
         return IntDistribution(int(key.low), int(key.high), log=key.log, step=int(key.step or 1))
     return FloatDistribution(key.low, key.high, log=key.log, step=key.step)

@@ -9,7 +9,7 @@ from pathlib import Path
 from runner.base.atomic import write_atomically
 from runner.store.seal import DamagedError, read_json, sealed_json
 from runner.store.sweep import write_jobs
-from runner.sweeps.tuning.key import Key
+from runner.sweeps.tuning.key import TunedKey
 from runner.sweeps.tuning.objective import Objective, Trial, best
 
 JOURNAL = "journal.log"
@@ -20,7 +20,7 @@ _MEND = "the tuning's command makes it again"
 
 
 @dataclass(frozen=True)
-class Study:
+class TuningDefinition:
     """Definition of a tuning.
 
     Attributes:
@@ -32,7 +32,7 @@ class Study:
     """
 
     overrides: Sequence[str]
-    keys: Sequence[Key]
+    keys: Sequence[TunedKey]
     objectives: Sequence[Objective]
     at_once: int
     command: str
@@ -91,7 +91,7 @@ class Tuning:
     """
 
     folder: Path
-    study: Study
+    study: TuningDefinition
     trials: Sequence[Trial]
     fresh: Fresh | None = None
 
@@ -128,9 +128,9 @@ def open_tuning(folder: Path) -> Tuning:
     path, journal = folder / _FILE, folder / JOURNAL
     try:
         content = read_json(path, _MEND)
-        study = Study(
+        study = TuningDefinition(
             overrides=content["overrides"],
-            keys=[Key(**key) for key in content["keys"]],
+            keys=[TunedKey(**key) for key in content["keys"]],
             objectives=[Objective(**objective) for objective in content["objectives"]],
             at_once=content["at_once"],
             command=content["command"],

@@ -18,7 +18,7 @@ from runner.reporting.stored import compose_report
 from runner.statistics.scope import first_pairs
 from runner.sweeps.challenge.case import Case, check_case
 from runner.sweeps.challenge.combinations import combine
-from runner.sweeps.challenge.families import FAMILIES, LeftOutError, _step
+from runner.sweeps.challenge.families import FAMILIES, NotApplicableError, _step
 from runner.sweeps.challenge.question import CLASSES
 from runner.sweeps.challenge.stored import open_challenge
 from runner.sweeps.challenge.table import change_values, list_variations, read_values
@@ -241,7 +241,7 @@ def test_what_does_not_apply_is_left_out_with_its_reason(sweep):
 def test_a_plant_that_integrates_nothing_has_no_finer_step():
     line = ("robot=meca500", "plant=kinematic", "controller=differential_inverse_kinematics", "trajectory=quintic")
     config = validate(compose(line))
-    with pytest.raises(LeftOutError, match="the plant integrates nothing"):
+    with pytest.raises(NotApplicableError, match="the plant integrates nothing"):
         _step(Case((), (config, config)), 0.2)
 
 

@@ -7,7 +7,7 @@ from pathlib import Path
 import pytest
 
 from runner.reporting.results import Row
-from runner.store.listing import Entry
+from runner.store.listing import ListedResult
 
 TASK = ("robot=macro", "duration=0.05", "noise=thesis", "repetitions=6", "hydra.sweeper.workers=0")
 
@@ -85,4 +85,4 @@ def test_bad_arguments_are_refused(cli, words, message):
     ("size", "shown"), [(0, "0 B"), (999, "999 B"), (1_000, "1 kB"), (12_345_678, "12.3 MB"), (5 * 10**15, "5e+03 TB")]
 )
 def test_a_size_has_the_largest_unit_of_which_it_has_one(size, shown):
-    assert Row(Entry("run", Path("a"), 0.0, size, True), "").size == shown
+    assert Row(ListedResult("run", Path("a"), 0.0, size, True), "").size == shown

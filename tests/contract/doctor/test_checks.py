@@ -11,7 +11,7 @@ from runner.base.engines import has_pybullet
 from runner.base.errors import RunnerError
 from runner.doctor import engines
 from runner.doctor.examination import examine
-from runner.doctor.finding import Finding, together
+from runner.doctor.finding import DoctorFinding, together
 from runner.robots.inertials import fix_inertia, impossible_inertia
 from runner.robots.tree import read_tree
 
@@ -299,7 +299,9 @@ def test_an_engine_that_reads_another_arm_is_refused():
 
 
 def test_findings_of_the_same_words_are_one_and_refused_ones_come_first():
-    said = [Finding("note", f"link '{name}'", "said", "do") for name in "ab"] + [Finding("refused", "tip", "said")]
+    said = [DoctorFinding("note", f"link '{name}'", "said", "do") for name in "ab"] + [
+        DoctorFinding("refused", "tip", "said")
+    ]
     assert list(map(str, together(said))) == ["refused tip: said", "note    links 'a', 'b': said; do"]
 
 

@@ -10,7 +10,7 @@ import pytest
 from runner.base.errors import RunnerError
 from runner.recordings.columns_map import Signal
 from runner.recordings.compare import compare_recording
-from runner.recordings.friction import Friction, JointFriction
+from runner.recordings.friction import Friction, FrictionEstimate
 from runner.recordings.setting import setting_of
 from runner.recordings.smoothing import derivative
 from runner.recordings.verdict import explained, verdict_lines
@@ -149,8 +149,8 @@ def test_a_lag_behind_the_commands_is_no_time_offset(stored, compared):
 def test_friction_below_zero_is_named(stored, compared):
     found = compared(JOINTS)
     joints = [
-        JointFriction("q1", "rad", -6.4, 1.6, 0.1, 0.2, 0.0, np.zeros(1), np.zeros(1)),
-        JointFriction("q2", "rad", 3.3, 1.9, -0.1, 0.2, 0.0, np.zeros(1), np.zeros(1)),
+        FrictionEstimate("q1", "rad", -6.4, 1.6, 0.1, 0.2, 0.0, np.zeros(1), np.zeros(1)),
+        FrictionEstimate("q2", "rad", 3.3, 1.9, -0.1, 0.2, 0.0, np.zeros(1), np.zeros(1)),
     ]
     (line,) = (line for line in friction_lines(replace(found, friction=Friction(joints, [], 10.0))) if "Below" in line)
     assert line.startswith("Below zero, with the whole interval: q1 viscous. No friction is")

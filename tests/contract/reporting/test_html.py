@@ -15,7 +15,7 @@ from support.sample_document import HOSTILE, curves, document, playback
 from runner.base.sanitize import plain
 from runner.papers.reporting.claims import Claim, ClaimResult, Verdicts
 from runner.reporting import outline
-from runner.reporting.document import Block, Code, Document, Origin, Section, Text
+from runner.reporting.document import Code, Document, Origin, ReportBlock, Section, Text
 from runner.reporting.markup import spans
 from runner.reporting.render import render_html
 from runner.reporting.templating import html_environment, typst_environment
@@ -53,7 +53,7 @@ def quiet():
     return Page(render_html(document("words")))
 
 
-@pytest.mark.parametrize("kind", Block.__subclasses__(), ids=lambda kind: kind.block)
+@pytest.mark.parametrize("kind", ReportBlock.__subclasses__(), ids=lambda kind: kind.block)
 def test_every_block_type_has_a_macro(kind):
     blocks = html_environment().get_template(f"{kind.templates}.html.j2").make_module({})
     assert callable(getattr(blocks, kind.block))

@@ -8,13 +8,13 @@ from support.pdf_text import pages
 from support.sample_document import HOSTILE, document
 
 from runner.reporting import render
-from runner.reporting.document import Block, Curves, Document, Panel, Section, Series, Table, Text
+from runner.reporting.document import Curves, Document, Panel, ReportBlock, Section, Series, Table, Text
 from runner.reporting.render import render_pdf
 from runner.reporting.table import numbers
 from runner.reporting.templating import quote_typst, typst_environment, typst_value
 
 
-@pytest.mark.parametrize("kind", Block.__subclasses__(), ids=lambda kind: kind.block)
+@pytest.mark.parametrize("kind", ReportBlock.__subclasses__(), ids=lambda kind: kind.block)
 def test_every_block_type_has_a_macro(kind):
     blocks = typst_environment().get_template(f"{kind.templates}.typ.j2").make_module({})
     assert callable(getattr(blocks, kind.block))

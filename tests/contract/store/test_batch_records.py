@@ -9,7 +9,7 @@ import pytest
 from runner.caveats.rule import Caveat, Found
 from runner.metrics.summary import summarize_arrays
 from runner.plugins.metric_units import unit_of
-from runner.store import Finished, Outcome
+from runner.store import Finished, RunOutcome
 from runner.store.run import Run
 from runner.store.seal import JsonTexts
 from runner.store.shards import METRIC, ShardRow, read_columns, read_outcomes, shard_name, write_shard
@@ -64,7 +64,7 @@ def test_rows_of_texts_stand_in_a_shard_beside_runs(tmp_path, repetitions):
     of_metrics = tuple((metric, unit_of(metric)) for metric in metrics)
     rows = [
         ShardRow(
-            Outcome(name, "", False, len(found[run].caveats)),
+            RunOutcome(name, "", False, len(found[run].caveats)),
             texts.of(config),
             "<robot/>",
             records[run],

@@ -9,7 +9,7 @@ import pytest
 
 from runner.base.errors import StoreError
 from runner.base.machine import Machine
-from runner.store import DamagedError, Finished, Outcome, SchemaError, shards
+from runner.store import DamagedError, Finished, RunOutcome, SchemaError, shards
 from runner.store.parquet import encode_parquet
 from runner.store.run import Run
 from runner.store.shards import (
@@ -46,9 +46,9 @@ def test_what_goes_in_comes_out(tmp_path):
         assert (found.hash, found.config, found.record, found.urdf) == (run.hash, run.config, run.record, run.urdf)
         assert found.folder == tmp_path / "runs" / run.hash
     assert [finished.outcome(name) for name in "abcd"] == [
-        Outcome("a", "", False),
-        Outcome("b", "failed in repetition 2 at t = 0 s (q1): diverged", False),
-        Outcome("c", "cut short: too long", True),
+        RunOutcome("a", "", False),
+        RunOutcome("b", "failed in repetition 2 at t = 0 s (q1): diverged", False),
+        RunOutcome("c", "cut short: too long", True),
         None,
     ]
     with pytest.raises(StoreError, match="no folder"):
@@ -142,7 +142,7 @@ def test_a_shard_of_another_schema_is_refused(tmp_path, monkeypatch):
 
 @pytest.mark.parametrize("record", ["{", "[" * 100_000])
 def test_a_row_that_is_no_run_is_named(tmp_path, record):
-    row = ShardRow(Outcome("a", "", False), "{}", "<robot/>", record, (), np.zeros((0, 0)))
+    row = ShardRow(RunOutcome("a", "", False), "{}", "<robot/>", record, (), np.zeros((0, 0)))
     with pytest.raises(DamagedError, match=r"\.parquet: row 0 is not a run: "):
         open_row(write_shard(tmp_path, "s", [row]), 0)
 

@@ -16,7 +16,7 @@ from runner.assembly.validation import validate
 from runner.config.compose.compose import compose
 from runner.papers.commands.reproduce import _chosen
 from runner.papers.studies.precision import measure, tried
-from runner.papers.studies.precision.exact import Adaptive, Collocation, energy_drift
+from runner.papers.studies.precision.exact import AdaptiveStep, Collocation, energy_drift
 from runner.papers.studies.precision.figures import large_enough
 from runner.papers.study.expected_caveats import unexpected_caveats
 from runner.papers.study.results import MissingError
@@ -75,7 +75,7 @@ def test_a_pendulum_hangs_after_a_quarter_of_its_period(model: RobotModel, way: 
     omega = np.sqrt(9.81 / LENGTH)
     assert np.linalg.norm(model.gravity) == pytest.approx(9.81)
     quarter = float(ellipk(np.sin(0.5 * ANGLE) ** 2)) / omega
-    plant = Adaptive(model, quarter, 1e-15) if way == "adaptive" else Collocation(model, quarter)
+    plant = AdaptiveStep(model, quarter, 1e-15) if way == "adaptive" else Collocation(model, quarter)
     plant.reset(np.array([ANGLE]), np.zeros(1))
     plant.advance(np.zeros(1))
     assert plant.q[0] == pytest.approx(0.0, abs=1e-13)
@@ -84,7 +84,7 @@ def test_a_pendulum_hangs_after_a_quarter_of_its_period(model: RobotModel, way: 
 
 def test_a_held_torque_does_its_work(model: RobotModel) -> None:
     """The gain of energy is torque times way, by both methods."""
-    for plant in (Adaptive(model, 0.3, 1e-15), Collocation(model, 0.3)):
+    for plant in (AdaptiveStep(model, 0.3, 1e-15), Collocation(model, 0.3)):
         plant.reset(np.array([ANGLE]), np.zeros(1))
         plant.advance(np.array([5.0]))
         q, dq = float(plant.q[0]), float(plant.dq[0])
@@ -122,8 +122,8 @@ def test_what_is_worked_out_of_a_case_is_of_fourth_order_and_two_methods_agree()
     assert set(solved["compiled_seconds"]) == set(steps)
 
 
-def tried_by(errors: Mapping[float, float]) -> list[tried.Tried]:
-    return [tried.Tried(step, off, off, 1.0) for step, off in errors.items()]
+def tried_by(errors: Mapping[float, float]) -> list[tried.SteppedPlant]:
+    return [tried.SteppedPlant(step, off, off, 1.0) for step, off in errors.items()]
 
 
 def test_the_order_is_the_power_between_the_two_largest_steps() -> None:

@@ -11,7 +11,7 @@ from support.study_sections import every_run, texts, unfinished_texts
 
 from runner.papers.reporting.published_claims import load_claims
 from runner.papers.studies.thesis import how_sure
-from runner.papers.studies.thesis.how_sure import DRAWN, Judged, judge_by_seeds
+from runner.papers.studies.thesis.how_sure import DRAWN, JudgedClaim, judge_by_seeds
 from runner.papers.study.measured import Finding
 from runner.papers.study.study import load_study
 from runner.statistics.proportion import count_share
@@ -47,7 +47,7 @@ def with_values(some: Run, **values: list[float | None]) -> Run:
     return changed
 
 
-def judged_by(some: Run, number: int, values: list[float | None], **others: list[float | None]) -> Judged:
+def judged_by(some: Run, number: int, values: list[float | None], **others: list[float | None]) -> JudgedClaim:
     """Return a claim judged by seeds with these values; the study's own run has those of the first ones."""
     claim = next(each for each in CLAIMS if each.number == number)
     stored = {claim.experiment.rpartition("/")[2]: {claim.metric: values}}

@@ -59,7 +59,7 @@ def alone(chunk, outputs):
         end
         for part in chunk.parts
         for place, name in enumerate(part.names)
-        for end in work.work(Chunk(f"9-{name}", chunk.rules, [work.Part([name], [part.configs[place]])])).outcomes
+        for end in work.work(Chunk(f"9-{name}", chunk.rules, [work.SeedPart([name], [part.configs[place]])])).outcomes
     )
 
 

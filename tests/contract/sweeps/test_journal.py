@@ -9,10 +9,10 @@ import pytest
 from runner.base.errors import StoreError
 from runner.store.seal import Lines
 from runner.sweeps.tuning.journal import Journal, read_trials
-from runner.sweeps.tuning.key import Key
+from runner.sweeps.tuning.key import TunedKey
 from runner.sweeps.tuning.objective import Objective, Trial
 
-KEYS = [Key("x", 0.0, 1.0, None, False, False)]
+KEYS = [TunedKey("x", 0.0, 1.0, None, False, False)]
 GOALS = [Objective("settling_time", "minimize"), Objective("peak_torque", "maximize")]
 TRIALS = [
     Trial({"x": 0.25}, (1.5, 2.5), "abc", ""),

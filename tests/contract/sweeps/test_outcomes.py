@@ -1,6 +1,6 @@
 """Ends of runs in a store: by name, and in shards."""
 
-from runner.store import Finished, Outcome
+from runner.store import Finished, RunOutcome
 from runner.store.names import Names
 from runner.store.run import Run
 from runner.store.shards import write_shard
@@ -12,13 +12,13 @@ NAMES = Names.of(["b" * 24, "a" * 24, "b" * 24, "c" * 24])
 def test_ends_are_found_by_name_and_cells_of_one_run_are_counted_together():
     ends = Ends(NAMES)
     assert (len(ends), ends.left.tolist(), dict(ends)) == (0, [0, 1, 3], {})
-    good, bad = Outcome("b" * 24, "", False, 2), Outcome("c" * 24, "cut short: late", True)
+    good, bad = RunOutcome("b" * 24, "", False, 2), RunOutcome("c" * 24, "cut short: late", True)
     ends.add([good, bad])
     assert dict(ends) == {good.name: good, bad.name: bad}
     assert (ends.left.tolist(), ends.failed.tolist(), ends.caveats.tolist()) == ([1], [3], [2, 2, 0])
     assert "a" * 24 not in ends
     assert "d" * 24 not in ends
-    ends.add([Outcome("c" * 24, "", False)])
+    ends.add([RunOutcome("c" * 24, "", False)])
     assert ends.failed.tolist() == []
     assert ends["c" * 24].failure == ""
 

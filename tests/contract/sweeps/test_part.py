@@ -11,7 +11,7 @@ from runner.config.limits import split_part
 from runner.store.sweep import without_keys
 from runner.sweeps import part as parts_of_sweeps
 from runner.sweeps.check import check
-from runner.sweeps.part import Part, own_part
+from runner.sweeps.part import GridPart, own_part
 
 GRIDS = {
     "seeds": ("seed=range(0,7)",),
@@ -26,7 +26,7 @@ SHORT = ("robot=macro", "duration=0.05")
 @pytest.mark.parametrize("grid", GRIDS.values(), ids=GRIDS)
 def test_parts_have_each_cell_once_with_its_own_config(grid, count):
     whole = plan_sweep([*SHORT, *grid])
-    parts = [Part(whole, number, count) for number in range(count)]
+    parts = [GridPart(whole, number, count) for number in range(count)]
     assert sorted(itertools.chain.from_iterable(part.cells for part in parts)) == [*range(len(whole))]
     for part in parts:
         for cell, own in enumerate(part.cells):

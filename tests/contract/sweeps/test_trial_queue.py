@@ -7,10 +7,10 @@ from runner import store
 from runner.config.compose.composer import Composer
 from runner.config.limits import SweepConfig
 from runner.sweeps.tuning.journal import Journal
-from runner.sweeps.tuning.key import Key
+from runner.sweeps.tuning.key import TunedKey
 from runner.sweeps.tuning.objective import Objective
 from runner.sweeps.tuning.queue import TrialQueue
-from runner.sweeps.tuning.study import Study
+from runner.sweeps.tuning.study import TuningDefinition
 from runner.sweeps.work import work
 from runner.sweeps.writer import Rules
 
@@ -19,9 +19,9 @@ SETTINGS = SweepConfig(trace="auto", retry="none", on_failure="continue", attemp
 
 @pytest.fixture
 def queue(tmp_path):
-    keys = [Key("controller.natural_frequency", 5.0, 80.0, None, True, False)]
+    keys = [TunedKey("controller.natural_frequency", 5.0, 80.0, None, True, False)]
     goals = [Objective("peak_torque", "minimize")]
-    study = Study(SHORT, keys, goals, 3, "")
+    study = TuningDefinition(SHORT, keys, goals, 3, "")
     store.prepare(tmp_path)
     folder = tmp_path / "tunings" / "one"
     study.write(folder, [])

@@ -135,10 +135,10 @@ def test_a_verdict_follows_from_the_text_that_is_shown(source):
         check = Check(part, 4)
         for entry in (entry.as_read(source_of(source)) for entry in part.entries):
             key = "corrected" if entry.corrected else "emendation" if entry.emendation else "printed"
-            names = list(entry.right.elements) if entry.derivation and entry.right.readable else []
+            names = list(entry.true_form.elements) if entry.derivation and entry.true_form.readable else []
             for name in names[:: max(1, len(names) // 6)]:
                 with pytest.raises(AuditError, match=r"wrong|disagree"):
-                    check.check(entry.model_copy(update={key: spoilt(entry.right, name)}))
+                    check.check(entry.model_copy(update={key: spoilt(entry.true_form, name)}))
             if entry.corrected and entry.printed.readable and not entry.emendation and entry.printed.elements:
                 sound, name = check.check(entry), next(iter(entry.printed.elements))
                 found = check.check(entry.model_copy(update={"printed": spoilt(entry.printed, name)}))

@@ -12,7 +12,7 @@ from support.engines import ASKED
 
 from runner.caveats import plant_error, rounding
 from runner.caveats.monitor import Watch, look_together
-from runner.caveats.setting import Signals, setting_of, signals_of
+from runner.caveats.setting import RunSignals, setting_of, signals_of
 from runner.caveats.setting_rules import SETTING_RULES
 from runner.caveats.trace_rules import TRACE_RULES
 from runner.caveats.versions import changes_since, our_thresholds, rules_digest
@@ -115,7 +115,7 @@ def test_repetitions_of_many_runs_stand_behind_them(checked_config):
         for run in repetitions:
             watch.look(run)
     names = vars(each[0][0])
-    look_together(together, Signals(*(np.array([[getattr(r, n) for r in own] for own in each]) for n in names)))
+    look_together(together, RunSignals(*(np.array([[getattr(r, n) for r in own] for own in each]) for n in names)))
     found = [watch.found() for watch in alone]
     assert [watch.found() for watch in together] == found
     told = {caveat.text.rpartition(", in ")[2] for own in found for caveat in own.caveats}

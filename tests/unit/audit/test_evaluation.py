@@ -6,7 +6,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from runner.base.errors import RunnerError
-from runner.papers.audit.evaluation import Numbered, Values, evaluate, evaluate_sides
+from runner.papers.audit.evaluation import Numbered, SampleValues, evaluate, evaluate_sides
 from runner.papers.expressions.grammar import ExpressionError
 from runner.papers.expressions.parser import parse
 
@@ -145,7 +145,7 @@ def test_an_inverse_that_exists_at_some_samples_has_no_number_at_the_others():
 
 def test_an_expression_uses_others_and_never_itself():
     texts = {"Lambda": "transpose(J) @ J", "mu": "Lambda @ v", "F": "mu - v", "a": "b + k", "b": "a"}
-    values = Values(SHAPED, {name: Numbered(text) for name, text in texts.items()})
+    values = SampleValues(SHAPED, {name: Numbered(text) for name, text in texts.items()})
     np.testing.assert_array_equal(values["F"], evaluate(parse("transpose(J) @ J @ v - v"), SHAPED))
     assert values.used == {"Lambda", "mu", "F"}
     with pytest.raises(RunnerError, match="a uses b uses a: an element cannot use itself"):

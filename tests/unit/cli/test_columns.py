@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from runner.reporting.answers import HEADER, Asked, judge
+from runner.reporting.answers import HEADER, AskedComparison, judge
 from runner.reporting.comparison.sweeps import letter
 from runner.reporting.table import Number
 from runner.statistics import compare_paired
@@ -10,7 +10,9 @@ from runner.statistics import compare_paired
 
 def test_an_answer_fills_its_columns():
     samples = (np.arange(6.0), np.arange(6.0) + 2.0), (np.zeros(2), np.ones(2))
-    shifted, few = (judge([Asked("energy", "J", compare_paired(*each))], ["energy"])[0].plain_cells for each in samples)
+    shifted, few = (
+        judge([AskedComparison("energy", "J", compare_paired(*each))], ["energy"])[0].plain_cells for each in samples
+    )
     assert shifted == [Number(2.0), Number(None, 2.0, 2.0), "6", "1.00", "0.031", "larger"]
     assert len(shifted) == len(HEADER) + 1
     assert few == [Number(1.0), Number(None), "2", "1.00", "-", "too few pairs to say (2 of 6)"]

@@ -6,11 +6,11 @@ from pathlib import Path
 import pytest
 from support.hostile_expressions import FUNCTIONS, SCOPE, VALUES, Length
 
-from runner.papers.expressions.evaluator import LONGEST, Budget, ExpressionError, Scope, parse
+from runner.papers.expressions.evaluator import LONGEST, ExpressionError, OperationBudget, Scope, parse
 
 
 def value(text, operations=1_000_000):
-    return SCOPE.evaluate(text, Budget(operations))
+    return SCOPE.evaluate(text, OperationBudget(operations))
 
 
 def refusal(text, operations=1_000_000):
@@ -154,15 +154,15 @@ def test_what_is_not_listed_is_never_handed_out(text, kind):
 
 def test_a_value_of_a_name_is_looked_at_too():
     with pytest.raises(ExpressionError, match=r"cannot hold a value of type .*Path"):
-        Scope({}, {"folder": Path("run")}).evaluate("folder", Budget())
+        Scope({}, {"folder": Path("run")}).evaluate("folder", OperationBudget())
 
 
 def test_values_of_handed_classes_pass_but_are_not_worked_with():
     scope = Scope({"pair": FUNCTIONS["pair"]}, {"folder": Path("run")}, handed=(Path,))
-    assert scope.evaluate("pair(folder)", Budget()) == [Path("run"), None]
+    assert scope.evaluate("pair(folder)", OperationBudget()) == [Path("run"), None]
     for text in ("folder.name", "folder/'x'", "folder == folder", "'%s' % folder", "-folder"):
         with pytest.raises(ExpressionError):
-            scope.evaluate(text, Budget())
+            scope.evaluate(text, OperationBudget())
 
 
 @pytest.mark.parametrize(
@@ -206,10 +206,10 @@ def test_nested_lists_that_double_are_refused_where_they_are_too_large():
         count = 2 ** (level + 1) - 2 + 2**level  # items of the lists and of those in them
         if count > LONGEST:
             break
-        doubled = scope.evaluate("[a, a]", Budget())
+        doubled = scope.evaluate("[a, a]", OperationBudget())
     assert level == 12
     with pytest.raises(ExpressionError, match="more than 10000 items"):
-        scope.evaluate("[a, a]", Budget())
+        scope.evaluate("[a, a]", OperationBudget())
 
 
 @pytest.mark.parametrize(("text", "cost"), [("x", 1), ("x + n", 2 + 1), ("[x, n]", 3 + 2), ("many[0]", 2 + 1 + 9000)])
@@ -219,7 +219,7 @@ def test_each_part_and_each_item_takes_one_operation(text, cost):
 
 
 def test_a_budget_is_shared_by_the_expressions_of_a_file():
-    budget = Budget(10)
+    budget = OperationBudget(10)
     for _ in range(5):
         SCOPE.evaluate("-x", budget)
     with pytest.raises(ExpressionError, match="more than 10 operations"):
@@ -233,7 +233,7 @@ def test_infinity_and_nan_are_numbers():
 
 def test_numbers_stand_for_what_the_scope_makes_of_them():
     scope = Scope({}, {"a": Length(1.0)}, {Length: ("metres",)}, number=Length)
-    assert scope.evaluate("-(a + 2) + 4.5", Budget()) == Length(1.5)
+    assert scope.evaluate("-(a + 2) + 4.5", OperationBudget()) == Length(1.5)
 
 
 def test_a_tree_is_made_once():

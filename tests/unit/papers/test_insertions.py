@@ -2,7 +2,7 @@
 
 import pytest
 
-from runner.papers.expressions.evaluator import Budget, Scope
+from runner.papers.expressions.evaluator import OperationBudget, Scope
 from runner.papers.expressions.grammar import ExpressionError
 from runner.papers.expressions.insertions import fill, insertions
 
@@ -33,6 +33,6 @@ def test_one_that_is_not_closed_is_told_with_its_place(text):
 
 
 def test_values_stand_in_their_place():
-    assert fill('{{ x }} and {{ of({"a": {"b": 7}}) }}.', SCOPE, Budget()) == "2.5 and 7."
-    assert fill("{{ x }}{{ group.a }}", SCOPE, Budget(), lambda value: f"<{value}>") == "<2.5><1>"
-    assert fill("nothing", SCOPE, Budget()) == "nothing"
+    assert fill('{{ x }} and {{ of({"a": {"b": 7}}) }}.', SCOPE, OperationBudget()) == "2.5 and 7."
+    assert fill("{{ x }}{{ group.a }}", SCOPE, OperationBudget(), lambda value: f"<{value}>") == "<2.5><1>"
+    assert fill("nothing", SCOPE, OperationBudget()) == "nothing"

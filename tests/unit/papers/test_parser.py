@@ -4,7 +4,7 @@ import pytest
 
 from runner.papers.expressions.grammar import LONGEST, ExpressionError
 from runner.papers.expressions.parser import parse
-from runner.papers.expressions.tree import Call, Name, Number, Power, Product, Sum, parts
+from runner.papers.expressions.tree import Call, Name, Power, Product, Sum, WrittenNumber, parts
 
 
 def names(node):
@@ -147,9 +147,9 @@ A, B, C = (lambda index, name=name: Name(name, index) for name in "abc")
         ("a*x[i - 1, n]", Product(((False, A(0)), (False, Name("x[i-1,n]", 2))), 0)),
         ("a^b^c", Power(A(0), Power(B(2), C(4), 3), 1)),
         ("(a^b)**c", Power(Power(A(1), B(3), 2), C(7), 5)),
-        ("-a^2", Sum(((True, Power(A(1), Number("2", 3), 2)),), 0)),
+        ("-a^2", Sum(((True, Power(A(1), WrittenNumber("2", 3), 2)),), 0)),
         ("a^-b", Power(A(0), Sum(((True, B(3)),), 2), 1)),
-        ("\n (atan2(a, -1.50e+0))", Call("atan2", (A(9), Sum(((True, Number("1.50e+0", 13)),), 12)), 3)),
+        ("\n (atan2(a, -1.50e+0))", Call("atan2", (A(9), Sum(((True, WrittenNumber("1.50e+0", 13)),), 12)), 3)),
     ],
 )
 def test_brackets_and_signs_are_where_they_were(text, root):

@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 
 from runner.base.quantities import ROUNDING
-from runner.reporting.answers import PAIRS, Asked, judge
+from runner.reporting.answers import PAIRS, AskedComparison, judge
 from runner.statistics import compare_paired
 from runner.statistics.conclusion import ALPHA
 from tools.answers import CASES, false_answers, same_law, true_answers
@@ -18,7 +18,7 @@ APART = np.linspace(0.9, 1.1, N)  # differences of one sign
 
 def asked(differences, metric="rms_tracking_error", size=1.0, unit="m", error=None, rounding=0.0):
     a = np.full(len(differences), size)
-    return Asked(metric, unit, replace(compare_paired(a, a + differences), error=error, rounding=rounding))
+    return AskedComparison(metric, unit, replace(compare_paired(a, a + differences), error=error, rounding=rounding))
 
 
 def one(*given, **more):
@@ -105,7 +105,7 @@ def test_too_few_pairs_for_so_many_comparisons_say_how_many_would_do():
 def test_pairs_that_show_nothing_say_what_they_can_show_and_how_many_would_do():
     rng = np.random.default_rng(1)
     a = rng.normal(10.0, 1.0, 20)
-    (answer,) = judge([Asked("rms_tracking_error", "m", compare_paired(a, a + rng.normal(0.0, 1.0, 20)))], [])
+    (answer,) = judge([AskedComparison("rms_tracking_error", "m", compare_paired(a, a + rng.normal(0.0, 1.0, 20)))], [])
     text, found = answer.sentence(), answer.comparison
     assert text.startswith("Rms tracking error: no difference is shown between A (")
     best = found.smallest_shown(ALPHA)
@@ -146,7 +146,7 @@ def test_what_draws_nothing_is_exact():
 
     def exact(difference, error):
         found = replace(compare_paired(np.ones(1), np.ones(1) + difference), error=error, exact=True)
-        return judge([Asked("rms_tracking_error", "m", found)], ["rms_tracking_error"])[0]
+        return judge([AskedComparison("rms_tracking_error", "m", found)], ["rms_tracking_error"])[0]
 
     answer = exact(-0.3, 0.01)
     assert answer.sentence() == (
@@ -181,7 +181,7 @@ def test_no_power_below_what_counts_is_promised():
 
 def test_a_metric_without_a_value_in_some_draws_says_in_how_many():
     a, b = np.ones(N), np.where(np.arange(N) < 3, np.inf, 1.5)
-    (answer,) = judge([Asked("settling_time", "s", compare_paired(a, b))], [])
+    (answer,) = judge([AskedComparison("settling_time", "s", compare_paired(a, b))], [])
     assert "no value in 0 and 3 of 8 draws" in answer.sentence()
 
 

@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from runner.reporting.export.columns import Unit, decimals, lay_out
+from runner.reporting.export.columns import ScaledUnit, decimals, lay_out
 from runner.reporting.export.paper_table import summarize
 from runner.reporting.table import Column, Number, Table, numbers
 from runner.statistics import median_interval
@@ -36,14 +36,14 @@ def test_an_interval_decides_about_the_digits(median, low, high, expected):
 def test_one_unit_serves_a_column():
     samples = np.array([[0.00485, 0.00487, 0.00483], [0.0614, 0.0620, 0.0612]])
     found, _ = column("m", samples)
-    assert found.unit == Unit("mm")
+    assert found.unit == ScaledUnit("mm")
     assert [cell.text for cell in found.cells] == ["4.85", "61.4"]
 
 
 @pytest.mark.parametrize(("scale", "power", "median"), [(1e-7, -9, "500"), (2e6, 6, "10.0"), (1.0, 0, "5.00")])
 def test_a_power_of_ten_stands_in_the_head(scale, power, median):
     found, _ = column("N^2 m^2 s", scale * np.array([[4.0, 5.0, 6.0]]))
-    assert found.unit == Unit("N^2 m^2 s", power)
+    assert found.unit == ScaledUnit("N^2 m^2 s", power)
     assert found.cells[0].text == median
 
 
@@ -77,9 +77,9 @@ def test_numbers_of_rows_with_units_have_a_unit_and_power_each():
     rows = [["error", "m", Number(2e-3)], ["cost", "N^2 m^2 s", Number(5e6)], ["ratio", "1", Number(0.5)]]
     _, units, found = lay_out(Table("", ["metric", Column("unit", "unit"), *numbers("")], rows))
     assert [(cell.text, cell.unit) for cell in units.cells] == [
-        ("mm", Unit("mm")),
-        ("10⁶\u00a0N²\u00a0m²\u00a0s", Unit("N^2 m^2 s", 6)),
-        ("", Unit("1")),
+        ("mm", ScaledUnit("mm")),
+        ("10⁶\u00a0N²\u00a0m²\u00a0s", ScaledUnit("N^2 m^2 s", 6)),
+        ("", ScaledUnit("1")),
     ]
     assert [cell.text for cell in found.cells] == ["2.00", "5.00", "0.500"]
     assert found.head == "median"

@@ -8,7 +8,7 @@ import pytest
 from support.paper_sweep import by_hand
 
 from runner.base.errors import RunnerError
-from runner.reporting.export.columns import Unit, lay_out
+from runner.reporting.export.columns import ScaledUnit, lay_out
 from runner.reporting.export.columns import escape_markdown as markdown_escaped
 from runner.reporting.export.fitting import fit
 from runner.reporting.export.latex import escape_latex as latex_escaped
@@ -140,13 +140,13 @@ def test_latex_is_a_sound_tabular_of_booktabs_and_siunitx():
 @pytest.mark.parametrize(
     ("unit", "expected"),
     [
-        (Unit("1"), ""),
-        (Unit("N m"), r"\unit{\newton\metre}"),
-        (Unit("m/s^2"), r"\unit{\metre\per\second\tothe{2}}"),
-        (Unit("N^2 m^2 s", 3), r"\qty{e3}{\newton\tothe{2}\metre\tothe{2}\second}"),
-        (Unit("1", -6), r"\num{e-6}"),
-        (Unit("GBP/m^2", -9), r"\num{e-9} GBP/m\textasciicircum{}2"),
-        (Unit("a_b"), r"a\_b"),
+        (ScaledUnit("1"), ""),
+        (ScaledUnit("N m"), r"\unit{\newton\metre}"),
+        (ScaledUnit("m/s^2"), r"\unit{\metre\per\second\tothe{2}}"),
+        (ScaledUnit("N^2 m^2 s", 3), r"\qty{e3}{\newton\tothe{2}\metre\tothe{2}\second}"),
+        (ScaledUnit("1", -6), r"\num{e-6}"),
+        (ScaledUnit("GBP/m^2", -9), r"\num{e-9} GBP/m\textasciicircum{}2"),
+        (ScaledUnit("a_b"), r"a\_b"),
     ],
 )
 def test_units_are_those_of_siunitx(unit, expected):

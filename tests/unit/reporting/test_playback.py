@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 from support.sample_document import playback
 
-from runner.reporting.document import Body
+from runner.reporting.document import PlaybackBody
 from runner.reporting.playback import FRAME_RATE, FRAMES, frames, playback_spec
 
 
@@ -47,7 +47,9 @@ def test_runs_are_given_one_by_one_with_their_tips_and_joints():
 def test_a_planar_motion_is_seen_across_its_plane_and_another_one_obliquely():
     planar = playback_spec(playback())
     assert abs(np.sin(planar["azimuth"])) > 0.9  # the sample moves in the plane of x and z
-    ball = Body("b", [], [((0.0, 0.0, 0.0), 1.0)], np.eye(3)[[0, 1, 2] * 20] * 5.0, np.tile([1.0, 0, 0, 0], (60, 1)))
+    ball = PlaybackBody(
+        "b", [], [((0.0, 0.0, 0.0), 1.0)], np.eye(3)[[0, 1, 2] * 20] * 5.0, np.tile([1.0, 0, 0, 0], (60, 1))
+    )
     assert playback_spec(playback(bodies=[ball]))["elevation"] == pytest.approx(np.arctan2(0.75, np.hypot(0.9, 1.3)))
 
 
@@ -65,7 +67,7 @@ def test_a_motion_that_diverges_ends_before_it_does():
     positions = np.zeros((60, 3))
     positions[30:] = np.inf
     body = motion.bodies[0]
-    diverging = Body("link", body.segments, body.balls, positions, body.rotations)
+    diverging = PlaybackBody("link", body.segments, body.balls, positions, body.rotations)
     assert frames(playback(bodies=[diverging]))[-1] < 30
     (run,) = playback_spec(playback(bodies=[diverging]))["runs"]
     assert np.isfinite(unpacked(run["shapes"][0]["ends"], -1)).all()

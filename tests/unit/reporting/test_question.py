@@ -19,7 +19,7 @@ from runner.reporting.sweep.question import (
 )
 from runner.reporting.sweep.report import _title as title_of
 from runner.reporting.sweep.subject import choose
-from runner.sweeps.differing import Difference
+from runner.sweeps.differing import UnsweptDifference
 
 AXES = {"noise.position": [1e-4, 1e-3], "controller": ["computed_torque", "operational_space"]}
 
@@ -174,7 +174,9 @@ def test_the_end_of_a_sweep_tells_the_first_answer():
 def test_what_differs_with_the_question_is_named():
     plain = sweep(agreeing)
     keys = ["a", "b", "c", "d"]
-    found = [Difference(key, ("controller",), [("computed_torque", "1"), ("operational_space", "2")]) for key in keys]
+    found = [
+        UnsweptDifference(key, ("controller",), [("computed_torque", "1"), ("operational_space", "2")]) for key in keys
+    ]
     subject = replace(plain, measurements=replace(plain.measurements, differences=found))
     (text,) = causes(subject, find_answers(subject))
     assert text == "a, b, c and 1 more vary with controller and may be the cause: see Also differs."

@@ -13,7 +13,7 @@ from runner.reporting.sweep.cells import failing_cells, nothing_differs
 from runner.reporting.sweep.effects import cells_with_intervals
 from runner.reporting.sweep.stability import causes_of_failure
 from runner.reporting.sweep.subject import choose
-from runner.sweeps.differing import Difference
+from runner.sweeps.differing import UnsweptDifference
 
 
 def blocks(section, kind):
@@ -37,8 +37,8 @@ def test_axes_are_told_with_their_values_and_the_command():
 def test_what_differs_beyond_the_axes_stands_beside_them():
     plain = two_axes()
     found = [
-        Difference("controller.period", ("noise.position",), [("0.0001, 0.001", "0.01"), ("0.01", "0.001")]),
-        Difference("robot.home", (), [("", "x" * 80)]),
+        UnsweptDifference("controller.period", ("noise.position",), [("0.0001, 0.001", "0.01"), ("0.01", "0.001")]),
+        UnsweptDifference("robot.home", (), [("", "x" * 80)]),
     ]
     subject = choose(replace(plain.measurements, differences=found))
     _, table = blocks(cells.axes_section(subject, ""), Table)

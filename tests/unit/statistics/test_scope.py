@@ -5,11 +5,11 @@ import pytest
 
 from runner.statistics import compare_paired
 from runner.statistics.conclusion import ALPHA, SHARE, conclusion_sign, least_difference
-from runner.statistics.paired import Comparison
+from runner.statistics.paired import PairedComparison
 from runner.statistics.scope import (
     LOOKS,
-    Effect,
-    Tried,
+    AskedEffect,
+    TriedVariation,
     came_back,
     first_pairs,
     judge,
@@ -17,7 +17,7 @@ from runner.statistics.scope import (
     pairs_of_looks,
 )
 
-ASKED = Effect(-1, -0.28)
+ASKED = AskedEffect(-1, -0.28)
 PAIRS = 12
 
 
@@ -25,11 +25,11 @@ def pairs_of(effect, scatter=0.0, count=PAIRS, seed=0, **more):
     """Return a comparison of B = (1 + effect) A with normal scatter of the pairs; A is 1."""
     noise = scatter * np.random.default_rng(seed).standard_normal(count)
     found = compare_paired(np.ones(count), 1.0 + effect + noise)
-    return Comparison(found.a, found.b, found.differences, **more)
+    return PairedComparison(found.a, found.b, found.differences, **more)
 
 
 def word(found, asked=ASKED, level=ALPHA, **more):
-    return judge([Tried(found, **more)], asked, level)[0].word
+    return judge([TriedVariation(found, **more)], asked, level)[0].word
 
 
 @pytest.mark.parametrize(
@@ -48,18 +48,18 @@ def test_both_sides_of_the_margin(effect, expected):
 
 
 def test_the_margin_is_at_least_two_per_cent():
-    assert Effect(-1, -0.04).margin == SHARE
-    assert Effect(-1, -0.4).margin == pytest.approx(0.1)
-    assert Effect(0, 0.4).margin == SHARE
+    assert AskedEffect(-1, -0.04).margin == SHARE
+    assert AskedEffect(-1, -0.4).margin == pytest.approx(0.1)
+    assert AskedEffect(0, 0.4).margin == SHARE
 
 
 @pytest.mark.parametrize(("effect", "expected"), [(-0.03, "appears"), (0.03, "appears"), (0.01, "does not appear")])
 def test_words_of_a_question_without_a_difference(effect, expected):
-    assert word(pairs_of(effect, 1e-4), Effect(0, 0.001)) == expected
+    assert word(pairs_of(effect, 1e-4), AskedEffect(0, 0.001)) == expected
 
 
 def test_wide_scatter_is_not_told_and_says_how_many_pairs_would():
-    (judged,) = judge([Tried(pairs_of(-0.1, 0.3))], ASKED, ALPHA)
+    (judged,) = judge([TriedVariation(pairs_of(-0.1, 0.3))], ASKED, ALPHA)
     assert judged.word == "not shown"
     assert judged.needed > PAIRS
     again = [word(pairs_of(-0.1, 0.3, judged.needed, seed)) for seed in range(20)]
@@ -79,7 +79,7 @@ def test_sides_that_do_not_work_come_first():
     assert word(None) == "cannot be asked"
     for side in (0, 1):
         lost = (0.2, 0.7) if side == 0 else (0.7, 0.2)
-        (judged,) = judge([Tried(found, lost=lost)], ASKED)
+        (judged,) = judge([TriedVariation(found, lost=lost)], ASKED)
         assert (judged.word, judged.works) == ("only one works", side)
 
 
@@ -90,21 +90,21 @@ def test_exact_runs_are_compared_without_a_test():
 
 
 def test_a_fraction_is_not_relative():
-    asked = Effect(-1, -0.3, is_fraction=True)
+    asked = AskedEffect(-1, -0.3, is_fraction=True)
     found = compare_paired(np.full(PAIRS, 0.01), np.full(PAIRS, 0.02) + 1e-5 * np.arange(PAIRS))
     assert word(found, asked) == "vanishes"  # 0.01 of a fraction, though twice as large
 
 
 def test_a_scale_of_the_asked_case_serves_metrics_that_may_be_zero():
     found = compare_paired(np.zeros(PAIRS), np.full(PAIRS, 0.001) + 1e-6 * np.arange(PAIRS))
-    assert word(found, Effect(-1, -0.28, scale=1.0)) == "vanishes"
-    assert word(found, Effect(-1, -0.28)) == "reversed"
+    assert word(found, AskedEffect(-1, -0.28, scale=1.0)) == "vanishes"
+    assert word(found, AskedEffect(-1, -0.28)) == "reversed"
 
 
 def test_the_family_makes_each_test_stricter():
     found = pairs_of(-0.28, 0.1, 8)  # all of eight pairs have one sign: p = 2 / 2^8
     assert word(found) == "holds"
-    assert {one.word for one in judge([Tried(found)] * 20, ASKED)} == {"not shown"}
+    assert {one.word for one in judge([TriedVariation(found)] * 20, ASKED)} == {"not shown"}
 
 
 def test_first_pairs_can_decide_each_variation():
@@ -120,7 +120,7 @@ def test_only_variations_that_are_not_told_go_on():
     def ask(places, pairs):
         asked_for.append((list(places), pairs))
         effects = {0: (-0.28, 1e-3), 1: (-0.1, 0.08), 2: (0.0, 2.0)}
-        return [Tried(pairs_of(*effects[place], pairs)) for place in places]
+        return [TriedVariation(pairs_of(*effects[place], pairs)) for place in places]
 
     words = judge_in_looks(ask, 3, ASKED)
     assert asked_for[0] == ([0, 1, 2], 12)
@@ -132,7 +132,7 @@ def test_only_variations_that_are_not_told_go_on():
 
 
 def test_a_budget_ends_the_looks_early():
-    words = judge_in_looks(lambda places, _: [Tried(pairs_of(-0.28, 1e-3)) for _ in places[:2]], 3, ASKED)
+    words = judge_in_looks(lambda places, _: [TriedVariation(pairs_of(-0.28, 1e-3)) for _ in places[:2]], 3, ASKED)
     assert len(words) == 2
 
 

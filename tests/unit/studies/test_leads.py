@@ -3,18 +3,18 @@
 import numpy as np
 import pytest
 
-from runner.papers.studies.benchmark.cells import Entry, Lead, leads
+from runner.papers.studies.benchmark.cells import LawInCell, Lead, leads
 
 APART = np.arange(0.1, 0.65, 0.1)  # logarithms of ratios, one for each of six seeds
 ONE_TURNED = APART * [-1.0, 1.0, 1.0, 1.0, 1.0, 1.0]  # the smallest of them has the other sign
 
 
-def entry(law: str, *logarithms: np.ndarray) -> Entry:
+def entry(law: str, *logarithms: np.ndarray) -> LawInCell:
     """Return a law with the logarithms of its errors along one path, an array for each tuning."""
-    return Entry(law, np.exp(np.array(logarithms))[:, None, :])
+    return LawInCell(law, np.exp(np.array(logarithms))[:, None, :])
 
 
-def lead_of(a: Entry, b: Entry) -> Lead:
+def lead_of(a: LawInCell, b: LawInCell) -> Lead:
     return leads({"wind": [a, b]})["wind"][a.law, b.law]
 
 
@@ -32,7 +32,7 @@ def test_the_p_value_is_the_largest_of_all_tunings() -> None:
     ("ratio", "shown"), [(0.97, False), (1.0, False), (1.01, False), (1.0204, False), (1.0205, True)]
 )
 def test_where_nothing_is_drawn_a_lead_is_more_than_two_hundredths(ratio: float, shown: bool) -> None:
-    lead = lead_of(Entry("a", np.ones((2, 1, 1))), Entry("b", np.full((2, 1, 1), ratio)))
+    lead = lead_of(LawInCell("a", np.ones((2, 1, 1))), LawInCell("b", np.full((2, 1, 1), ratio)))
     assert (lead.shown, lead.factor, lead.p_value) == (shown, pytest.approx(ratio), None)
 
 

@@ -6,7 +6,7 @@ import json
 import pytest
 
 from runner.base.errors import RunnerError
-from runner.papers.study.changes import FILE, Change, changes, read_conclusions
+from runner.papers.study.changes import FILE, VersionChange, changes, read_conclusions
 
 OLD = {
     "thesis": {
@@ -100,8 +100,8 @@ def test_a_number_that_moves_by_rounding_is_of_its_own_kind(new, old, new_value,
 
 
 def test_the_size_of_a_change_is_a_share():
-    assert Change("number", "a", 2.0, 3.0).size == pytest.approx(0.5)
-    assert Change("number", "a", 0.0, 3.0).size == Change("number", "a", None, 3.0).size == float("inf")
+    assert VersionChange("number", "a", 2.0, 3.0).size == pytest.approx(0.5)
+    assert VersionChange("number", "a", 0.0, 3.0).size == VersionChange("number", "a", None, 3.0).size == float("inf")
 
 
 def test_a_study_from_before_there_were_caveats_is_read(new):
@@ -118,7 +118,7 @@ def test_a_study_from_before_there_were_caveats_is_read(new):
 
 
 def test_a_study_that_only_one_has_is_told():
-    assert changes({}, OLD) == [Change("study", "thesis", None, "The thesis")]
+    assert changes({}, OLD) == [VersionChange("study", "thesis", None, "The thesis")]
 
 
 def test_conclusions_are_read_from_a_file_or_a_report_s_folder(tmp_path):

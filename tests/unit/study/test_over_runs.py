@@ -7,7 +7,7 @@ from support.made_up_runs import made_up_metric, made_up_run, planned
 from runner.base.errors import RunnerError
 from runner.papers.study.measured import Measured
 from runner.papers.study.prose import blocks, plots, signals, tables
-from runner.papers.study.results import MissingError, found
+from runner.papers.study.results import MissingError, matching_runs
 
 
 def run_of(value, failed=False, ends=None, unit="m"):
@@ -31,14 +31,14 @@ RUNS = planned(PATTERN, GAINS)
 
 
 def test_a_pattern_names_runs_in_the_order_of_the_plan():
-    assert [one.name for one in found(RUNS, "gain/{gain}/full_equations")] == [
+    assert [one.name for one in matching_runs(RUNS, "gain/{gain}/full_equations")] == [
         "gain/1/full_equations",
         "gain/10/full_equations",
         "gain/5/full_equations",
     ]
-    by = [one.levels for one in found(RUNS, "gain/{gain}/{preset}", ["preset"])]
+    by = [one.levels for one in matching_runs(RUNS, "gain/{gain}/{preset}", ["preset"])]
     assert by[:3] == [{"gain": gain, "preset": "full_equations"} for gain in ("1", "10", "5")]
-    assert [one.levels["preset"] for one in found(RUNS, "gain/{gain}/{preset}")][:2] == [
+    assert [one.levels["preset"] for one in matching_runs(RUNS, "gain/{gain}/{preset}")][:2] == [
         "full_equations",
         "as_reported",
     ]
@@ -46,11 +46,11 @@ def test_a_pattern_names_runs_in_the_order_of_the_plan():
 
 def test_a_pattern_that_names_nothing_is_refused():
     with pytest.raises(RunnerError, match=r"no run is named like 'gian/\{gain\}/full_equations'"):
-        found(RUNS, "gian/{gain}/full_equations")
+        matching_runs(RUNS, "gian/{gain}/full_equations")
     with pytest.raises(RunnerError, match=r"has no axis 'gian' \(did you mean gain\?\)"):
-        found(RUNS, "gain/{gain}/full_equations", ["gian"])
+        matching_runs(RUNS, "gain/{gain}/full_equations", ["gian"])
     with pytest.raises(MissingError, match="gain/2/full_equations: cut short"):
-        found(planned(PATTERN, RUNS, {"gain/2/full_equations": "cut short"}), "gain/{gain}/full_equations")
+        matching_runs(planned(PATTERN, RUNS, {"gain/2/full_equations": "cut short"}), "gain/{gain}/full_equations")
 
 
 def test_a_table_has_a_row_for_each_run_and_a_unit_for_each_metric():
@@ -173,10 +173,10 @@ def test_the_exponent_of_two_numbers_is_found_over_runs():
 
 
 def test_a_cell_has_the_ends_of_a_signal():
-    made = tables.listing(RUNS, "Ways.", "held", ["end"], [blocks.told(RUNS, signals.ends_of("q2"), "held")])
+    made = tables.listing(RUNS, "Ways.", "held", ["end"], [blocks.value_of(RUNS, signals.ends_of("q2"), "held")])
     assert made.lines[1:] == [["-1 to 0"]]
     assert made.columns[0].kind == "number"
-    gain = blocks.told(RUNS, signals.ends_of(signals.setting("controller.gain")), "held")
+    gain = blocks.value_of(RUNS, signals.ends_of(signals.setting("controller.gain")), "held")
     assert tables.listing(RUNS, "Gain.", "held", ["gain"], [gain]).lines[1:] == [["70"]]
 
 

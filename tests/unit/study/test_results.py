@@ -10,14 +10,14 @@ from runner.papers.study.prose import read_chapter
 from runner.papers.study.prose.blocks import each, named
 from runner.papers.study.prose.plots import line
 from runner.papers.study.prose.tables import listing
-from runner.papers.study.results import LeftOutError, Results, found
+from runner.papers.study.results import LeftOutError, Results, matching_runs
 
 PATHS = ["line/a/1", "line/a/2", "line/b/1", "line/c/1", "circle/a/1"]
 RUNS = planned("{path}/{plant.case}/{number}", dict.fromkeys(PATHS))
 
 
 def names(pattern, by=(), runs=RUNS):
-    return [each.name for each in found(runs, pattern, by)]
+    return [each.name for each in matching_runs(runs, pattern, by)]
 
 
 def test_an_axis_stands_for_each_of_its_levels_in_the_order_of_the_plan():
@@ -42,7 +42,7 @@ def test_an_axis_with_levels_stands_for_these_alone_in_their_order():
 )
 def test_a_pattern_for_which_there_is_no_run_is_refused(pattern, told):
     with pytest.raises(RunnerError, match=told):
-        found(RUNS, pattern)
+        matching_runs(RUNS, pattern)
 
 
 def test_a_level_may_hold_a_slash_and_a_word_is_no_level():
@@ -56,7 +56,7 @@ def test_runs_that_the_profile_leaves_out_are_not_found_and_say_so_where_none_is
     runs = Results({"a": None}, dropped={"b": "not in quick", "c": "not in quick"}, parts=parts)
     assert names("{case}", runs=runs) == names("{case=b|a}", runs=runs) == ["a"]
     with pytest.raises(LeftOutError, match="b: not in quick"):
-        found(runs, "{case=b|c}")
+        matching_runs(runs, "{case=b|c}")
 
 
 def test_levels_are_those_of_names_that_begin_with_a_word():

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from runner.papers.study.tune import ROUNDS, _Search
-from runner.papers.study.tunings import Tuning, key_of
+from runner.papers.study.tunings import StudyTuning, key_of
 
 ERROR = "rms_tracking_error"
 
@@ -14,7 +14,7 @@ ERROR = "rms_tracking_error"
 def search(ranges, bounds=None, trials=32, seed=1, longer=()):
     keys = [key_of(name, 1.0, own) for name, own in ranges.items()]
     return _Search(
-        Tuning("arm/law", "law", (), (), ranges, ERROR, bounds or {}, trials, 3, longer),
+        StudyTuning("arm/law", "law", (), (), ranges, ERROR, bounds or {}, trials, 3, longer),
         seed,
         keys,
         dict.fromkeys(ranges, 1.0),

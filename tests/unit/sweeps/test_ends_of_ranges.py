@@ -4,17 +4,17 @@ from pathlib import Path
 
 import pytest
 
-from runner.sweeps.tuning.key import Key
+from runner.sweeps.tuning.key import TunedKey
 from runner.sweeps.tuning.objective import Objective, Trial
-from runner.sweeps.tuning.study import Study, Tuning, at_ends
+from runner.sweeps.tuning.study import Tuning, TuningDefinition, at_ends
 
-RATIO = Key("controller.damping_ratio", 0.5, 1.5, None, False, False)
+RATIO = TunedKey("controller.damping_ratio", 0.5, 1.5, None, False, False)
 GOALS = [Objective("peak_torque", "minimize"), Objective("rms_torque", "minimize")]
 
 
 def tuning(values, objectives):
     """Return a tuning whose trial n has the n-th value, and losses by which the later ones win in all but the first."""
-    study = Study([], [RATIO], objectives, 1, "")
+    study = TuningDefinition([], [RATIO], objectives, 1, "")
     losses = [(float(n), -float(n))[: len(objectives)] for n in range(len(values))]
     return Tuning(Path(), study, [Trial({RATIO.name: v}, loss, "", "") for v, loss in zip(values, losses, strict=True)])
 

@@ -5,10 +5,10 @@ import pytest
 
 from runner.config.composed import Composed
 from runner.config.limits import SweepConfig
-from runner.store import Outcome
+from runner.store import RunOutcome
 from runner.sweeps import queue as queues
 from runner.sweeps.queue import Queue
-from runner.sweeps.work import Report
+from runner.sweeps.work import ChunkResult
 from runner.sweeps.writer import Rules
 
 SETTINGS = SweepConfig(trace="auto", retry="none", on_failure="continue", attempts=1, time_limit=None, part=None)
@@ -31,9 +31,9 @@ def drain(tmp_path, costs, seconds_per_tick, workers=2):
     for chunk in iter(lambda: queue.take(workers), None):
         cells = [int(name, 16) for name, _ in chunk.jobs]
         chunks.append(cells)
-        ends = [Outcome(name, "", False) for name, _ in chunk.jobs]
+        ends = [RunOutcome(name, "", False) for name, _ in chunk.jobs]
         queue.end(chunk)
-        queue.learn(Report(ends, "", seconds_per_tick * sum(costs[cell] for cell in cells)))
+        queue.learn(ChunkResult(ends, "", seconds_per_tick * sum(costs[cell] for cell in cells)))
     assert queue.ticks_made == sum(costs)
     return chunks
 
@@ -74,7 +74,7 @@ def test_ticks_of_chunks_under_way_count_until_the_chunk_has_ended(tmp_path):
     queue.tell(second.name, 70)
     assert queue.ticks_made == 110
     queue.end(first)
-    queue.learn(Report([Outcome(name, "", False) for name in first.names], "", 1.0))
+    queue.learn(ChunkResult([RunOutcome(name, "", False) for name in first.names], "", 1.0))
     queue.tell(first.name, 90)  # reported late
     assert queue.ticks_made == 100 + 70
 

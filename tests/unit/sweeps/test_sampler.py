@@ -5,14 +5,14 @@ import math
 import numpy as np
 import pytest
 
-from runner.sweeps.tuning.key import Key
+from runner.sweeps.tuning.key import TunedKey
 from runner.sweeps.tuning.objective import Objective, Trial
 from runner.sweeps.tuning.sampler import importances, make_optuna_trial, propose, read_ended
 
 KEYS = [
-    Key("x", 1e-2, 1e2, None, True, False),
-    Key("y", -1.0, 1.0, None, False, False),
-    Key("n", 1, 9, 2, False, True),
+    TunedKey("x", 1e-2, 1e2, None, True, False),
+    TunedKey("y", -1.0, 1.0, None, False, False),
+    TunedKey("n", 1, 9, 2, False, True),
 ]
 GOAL = [Objective("settling_time", "minimize")]
 TWO = [*GOAL, Objective("peak_torque", "maximize")]

@@ -10,8 +10,8 @@ import numpy as np
 from runner.base.arrays import FloatArray
 from runner.base.errors import RunnerError
 from runner.papers.study.fit import difference, setting
-from runner.papers.study.results import Runs, found
-from runner.statistics import Comparison, compare_paired, holm, holm_levels
+from runner.papers.study.results import Runs, matching_runs
+from runner.statistics import PairedComparison, compare_paired, holm, holm_levels
 from runner.statistics.conclusion import ALPHA, SHARE
 from runner.store import Run
 
@@ -19,7 +19,7 @@ _LEAST = 1.0 / (1.0 - SHARE)  # ratio of errors, above which a law leads
 
 
 @dataclass(frozen=True)
-class Entry:
+class LawInCell:
     """One law in a cell.
 
     Attributes:
@@ -78,7 +78,7 @@ class Lead:
     shown: bool
 
 
-def leads(ranked: Mapping[str, Sequence[Entry]]) -> dict[str, dict[tuple[str, str], Lead]]:
+def leads(ranked: Mapping[str, Sequence[LawInCell]]) -> dict[str, dict[tuple[str, str], Lead]]:
     """Return the lead of each law over each with a larger error, by both names, by condition.
 
     Args:
@@ -97,7 +97,7 @@ def leads(ranked: Mapping[str, Sequence[Entry]]) -> dict[str, dict[tuple[str, st
     return made
 
 
-def _compared(a: Entry, b: Entry) -> list[Comparison]:
+def _compared(a: LawInCell, b: LawInCell) -> list[PairedComparison]:
     """Return a comparison seed by seed for each pair of tunings; of one seed where nothing is drawn."""
     drawn = any(np.any(each.by_seed != each.by_seed[:, :1]) for each in (a, b))
     seeds = slice(None) if drawn else slice(1)
@@ -106,12 +106,14 @@ def _compared(a: Entry, b: Entry) -> list[Comparison]:
 
 
 @lru_cache(maxsize=100_000)
-def _paired(a: bytes, b: bytes) -> Comparison:
+def _paired(a: bytes, b: bytes) -> PairedComparison:
     """Return the comparison of two samples, which the same gains of two tunings, and halves of seeds, ask for again."""
     return compare_paired(np.frombuffer(a), np.frombuffer(b))
 
 
-def _lead(a: Entry, b: Entry, compared: Sequence[Comparison], decided: tuple[float, float] | None) -> Lead:
+def _lead(
+    a: LawInCell, b: LawInCell, compared: Sequence[PairedComparison], decided: tuple[float, float] | None
+) -> Lead:
     with np.errstate(invalid="ignore"):  # two laws that both failed
         factor = float(np.float64(b.score) / a.score)
         if decided is None:
@@ -138,7 +140,7 @@ _OF_ALL = "rms_tracking_error"  # along a motion that does not repeat
 
 
 @dataclass(frozen=True)
-class Cell:
+class BenchmarkCell:
     """An arm under a condition.
 
     Attributes:
@@ -146,11 +148,11 @@ class Cell:
         leads: Lead of each over each with a larger error, by both names.
     """
 
-    entries: Sequence[Entry]
+    entries: Sequence[LawInCell]
     leads: Mapping[tuple[str, str], Lead]
 
     @property
-    def best(self) -> Entry:
+    def best(self) -> LawInCell:
         """The law with the smallest error."""
         return self.entries[0]
 
@@ -163,7 +165,7 @@ class Cell:
             number[entry.law] = 1 + max((number[law] for law in ahead), default=-1)
         return [[law for law, own in number.items() if own == each] for each in range(1 + max(number.values()))]
 
-    def entry(self, law: str) -> Entry:
+    def entry(self, law: str) -> LawInCell:
         """Return the result of a law."""
         return next(each for each in self.entries if each.law == law)
 
@@ -181,7 +183,7 @@ def cells(
     gains: Sequence[str] = (),
     tasks: Sequence[str] = (),
     after: int = ROUND,
-) -> dict[str, Cell]:
+) -> dict[str, BenchmarkCell]:
     """Return the results of the laws on an arm, by condition.
 
     Args:
@@ -206,7 +208,7 @@ def cells(
     errors = _errors(runs, f"{grid}/{arm}/{{law}}/{task}/{{{condition}}}{last}", condition, gains, metric)
     ranked = {name: _ranked(by_law, seeds) for name, by_law in errors.items()}
     ahead = leads(ranked)
-    return {name: Cell(entered, ahead[name]) for name, entered in ranked.items()}
+    return {name: BenchmarkCell(entered, ahead[name]) for name, entered in ranked.items()}
 
 
 def errors_of(run: Run, metric: str) -> FloatArray:
@@ -217,9 +219,9 @@ def errors_of(run: Run, metric: str) -> FloatArray:
     return errors
 
 
-def _ranked(by_law: Mapping[str, FloatArray], seeds: slice) -> list[Entry]:
+def _ranked(by_law: Mapping[str, FloatArray], seeds: slice) -> list[LawInCell]:
     """Return the laws of a condition, the smallest error first."""
-    entered = [Entry(law, errors[..., seeds] if errors.shape[-1] > 1 else errors) for law, errors in by_law.items()]
+    entered = [LawInCell(law, errors[..., seeds] if errors.shape[-1] > 1 else errors) for law, errors in by_law.items()]
     return sorted(entered, key=lambda each: each.score)
 
 
@@ -227,7 +229,7 @@ def _errors(runs: Runs, pattern: str, axis: str, gains: Sequence[str], metric: s
     """Return the errors of each law under each condition, shape (tunings, paths, n), of the runs of a pattern."""
     grouped: dict[str, dict[str, dict[str, dict[str, FloatArray]]]] = {}
     alike: dict[tuple[str, str], tuple[str, dict[str, str]]] = {}
-    for one in found(runs, pattern):
+    for one in matching_runs(runs, pattern):
         law, task, condition = (one.levels[each] for each in ("law", "task", axis))
         own = setting(one.run.config)
         first = alike.setdefault((task, condition), (law, own))

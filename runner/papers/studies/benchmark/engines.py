@@ -4,10 +4,10 @@ import numpy as np
 from scipy import stats
 
 from runner.base.quantities import number
-from runner.papers.studies.benchmark.cells import Cell, cells
+from runner.papers.studies.benchmark.cells import BenchmarkCell, cells
 from runner.papers.studies.benchmark.made import CONDITIONS
 from runner.papers.study.measured import Measured
-from runner.papers.study.results import Runs, found
+from runner.papers.study.results import Runs, matching_runs
 from runner.reporting.document import Table
 from runner.reporting.figures import origin
 from runner.reporting.table import numbers
@@ -54,16 +54,18 @@ def leads(runs: Runs) -> Measured:
     return Measured("leads", float(sum(lead.shown for here, _ in _both(runs).values() for lead in here.leads.values())))
 
 
-def _both(runs: Runs) -> dict[str, tuple[Cell, Cell]]:
+def _both(runs: Runs) -> dict[str, tuple[BenchmarkCell, BenchmarkCell]]:
     """Return each condition on both plants, along the same paths, on the same seeds, with the same gains."""
     seeds = slice(_first(runs).config["repetitions"])
     there = cells(runs, _ARM, _ENGINE, gains=_GAINS)
-    tasks = list(dict.fromkeys(one.levels["task"] for one in found(runs, f"{_ENGINE}/{_ARM}/joint_pd/{{task}}/all/1")))
+    tasks = list(
+        dict.fromkeys(one.levels["task"] for one in matching_runs(runs, f"{_ENGINE}/{_ARM}/joint_pd/{{task}}/all/1"))
+    )
     here = cells(runs, _ARM, seeds=seeds, gains=_GAINS, tasks=tasks)
     return {condition: (here[condition], there[condition]) for condition in CONDITIONS if condition in there}
 
 
-def _correlation(here: Cell, there: Cell) -> float | None:
+def _correlation(here: BenchmarkCell, there: BenchmarkCell) -> float | None:
     """Return Spearman's rank correlation of the laws' errors; None where all of them failed on a plant."""
     scores = np.array([[cell.entry(each.law).score for each in here.entries] for cell in (here, there)])
     if any(np.all(own == own[0]) for own in scores):
@@ -72,4 +74,4 @@ def _correlation(here: Cell, there: Cell) -> float | None:
 
 
 def _first(runs: Runs) -> Run:
-    return found(runs, f"{_ENGINE}/{_ARM}/joint_pd/{{task}}/all/1")[0].run
+    return matching_runs(runs, f"{_ENGINE}/{_ARM}/joint_pd/{{task}}/all/1")[0].run

@@ -6,7 +6,7 @@ import numpy as np
 
 from runner.base.arrays import FloatArray
 from runner.base.quantities import number, quantity
-from runner.papers.studies.benchmark.cells import ROUND, UNTUNED, Cell, Entry, Lead, tuned
+from runner.papers.studies.benchmark.cells import ROUND, UNTUNED, BenchmarkCell, LawInCell, Lead, tuned
 from runner.papers.studies.benchmark.made import (
     ARMS,
     CONDITIONS,
@@ -19,7 +19,7 @@ from runner.papers.studies.benchmark.made import (
 )
 from runner.papers.study.measured import Measured
 from runner.papers.study.prose.signals import Quantity
-from runner.papers.study.results import Runs, found
+from runner.papers.study.results import Runs, matching_runs
 from runner.reporting.charts.figure import Map, Panel, Series
 from runner.reporting.document import Curves, Maps, Origin, Table, Text
 from runner.reporting.figures import origin
@@ -173,16 +173,16 @@ def failed(runs: Runs, gains: str, condition: str, *arms: str) -> list[Measured]
     ]
 
 
-def ratio(one: Entry, other: Entry) -> float | None:
+def ratio(one: LawInCell, other: LawInCell) -> float | None:
     """Return the error of a law over that of another one; None where both or the other one failed."""
     return one.score / other.score if np.isfinite(other.score) else None
 
 
-def _finite(entry: Entry) -> float | None:
+def _finite(entry: LawInCell) -> float | None:
     return entry.score if np.isfinite(entry.score) else None
 
 
-def error_words(entry: Entry) -> str:
+def error_words(entry: LawInCell) -> str:
     """Return the error of a law, and the fraction of its repetitions that failed."""
     if entry.failed == 0.0:
         return quantity(entry.score, "m")
@@ -215,7 +215,7 @@ def said(runs: Runs, arm: str, question: str, condition: str) -> str:
     return f"no answer: in round {ROUND} {', '.join(map(in_words, cell.groups[0]))}; {passed}"
 
 
-def answer(cell: Cell) -> str:
+def answer(cell: BenchmarkCell) -> str:
     """Return the laws of the first group as text; if it holds one law, also its lead."""
     if not np.isfinite(cell.best.score):
         return "all failed"
@@ -234,7 +234,7 @@ def _apart(errors: FloatArray) -> str:
 
 def typical(runs: Runs, arm: str, law: str, condition: str, gains: str, metric: str) -> float:
     """Return the mean over the paths of the median of a metric; NaN where a run has none."""
-    own = [one.run for one in found(runs, f"first/{arm}/{law}/{{task}}/{condition}/{gains}")]
+    own = [one.run for one in matching_runs(runs, f"first/{arm}/{law}/{{task}}/{condition}/{gains}")]
     return float(np.mean([_median(run, metric) for run in own]))
 
 
@@ -243,13 +243,13 @@ def _median(run: Run, metric: str) -> float:
     return np.nan if median is None else float(median)
 
 
-def said_again(runs: Runs) -> Measured:
+def leads_confirmed(runs: Runs) -> Measured:
     """Return of the leads that one half shows the share that the other half shows, too, in per cent."""
     said, again, _ = halves(runs)
     return Measured("leads that the other half shows, too", 100.0 * again / said if said else None, "%")
 
 
-def said_otherwise(runs: Runs) -> Measured:
+def leads_reversed(runs: Runs) -> Measured:
     """Return the number of leads of one half that the other half shows reversed."""
     return Measured("leads that the other half turns round", float(halves(runs)[2]))
 

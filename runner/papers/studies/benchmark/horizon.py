@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from runner.papers.studies.benchmark.cells import ROUND, Cell
+from runner.papers.studies.benchmark.cells import ROUND, BenchmarkCell
 from runner.papers.studies.benchmark.figures import answer, any_origin, error_words
 from runner.papers.studies.benchmark.made import ARMS, CHANGES, CONDITIONS, LATER, all_cells, arms_of, turned
 from runner.papers.study.measured import Measured
@@ -64,8 +64,8 @@ def grown(runs: Runs, condition: str, *laws: str) -> Measured:
     return Measured(words, most if np.isfinite(most) else None)
 
 
-def _column(runs: Runs, arm: str) -> dict[str, Cell]:
-    def of(question: str, after: int = ROUND) -> Cell:
+def _column(runs: Runs, arm: str) -> dict[str, BenchmarkCell]:
+    def of(question: str, after: int = ROUND) -> BenchmarkCell:
         return all_cells(runs, arm, question, _FIRST_TUNING, after=after)["all"]
 
     changed = all_cells(runs, arm, "changed")

@@ -9,7 +9,7 @@ from runner.base.quantities import number, quantity
 from runner.papers.studies.benchmark.cells import UNTUNED, tuned
 from runner.papers.studies.benchmark.figures import any_origin
 from runner.papers.studies.benchmark.made import ARMS, LAWS, QUESTIONS, arms_of, laws_of
-from runner.papers.study.results import Runs, found
+from runner.papers.study.results import Runs, matching_runs
 from runner.papers.study.tunings import Ranges, key_of
 from runner.reporting.document import Table, Text
 from runner.reporting.table import Column, numbers
@@ -26,7 +26,7 @@ def laws(runs: Runs, caption: str) -> Table:
     for law in (*laws_of(runs, arms_of(runs)[0]), _LEARNING):
         does, model, friction, repeats = LAWS.get(law, ("A law from outside.", *(_UNKNOWN,) * 3))
         sensor = "no" if law in LAWS else _UNKNOWN
-        timed = [] if law == _LEARNING else found(runs, f"engine/{{arm}}/{law}/{{task}}/exact/{{gains}}")
+        timed = [] if law == _LEARNING else matching_runs(runs, f"engine/{{arm}}/{law}/{{task}}/exact/{{gains}}")
         taken = [each for each in (one.run.record["timing"].get("tick_time_median") for one in timed) if each]
         tick = quantity(float(np.median(taken)), "s", 2) if taken else "–"
         rows.append([in_words(law), does, model, friction, sensor, repeats, tick])
@@ -88,6 +88,6 @@ def gains(runs: Runs, caption: str) -> Table:
 
 def keys_of(runs: Runs, arm: str, law: str, question: str, gains: str) -> dict[str, str]:
     """Return the keys of a law and its observer with their values, as strings, of a tuning."""
-    config = found(runs, f"{question}/{arm}/{law}/{{task}}/exact/{gains}")[0].run.config
+    config = matching_runs(runs, f"{question}/{arm}/{law}/{{task}}/exact/{gains}")[0].run.config
     own = {group: config[group] for group in ("controller", "disturbance_observer") if group in config}
     return {key: value for key, value in entries(own) if key.startswith(_LAW_KEYS)}

@@ -7,7 +7,7 @@ from runner.papers.studies.benchmark.cells import UNTUNED, tuned
 from runner.papers.studies.benchmark.figures import maps_of_laws, typical
 from runner.papers.studies.benchmark.made import ARMS, CONDITIONS, arms_of
 from runner.papers.study.measured import Measured
-from runner.papers.study.results import Runs, found
+from runner.papers.study.results import Runs, matching_runs
 from runner.papers.study.run_values import values
 from runner.reporting.document import Maps
 
@@ -23,9 +23,9 @@ def limits_over_need(runs: Runs) -> list[Measured]:
     """Return each joint's torque limit over the share that it is to be of what the motions need, on all arms."""
     ratios = []
     for arm in arms_of(runs):
-        exact = [one.run for one in found(runs, f"first/{arm}/computed_torque/{{task}}/exact/{UNTUNED[0]}")]
+        exact = [one.run for one in matching_runs(runs, f"first/{arm}/computed_torque/{{task}}/exact/{UNTUNED[0]}")]
         for condition, share in _LIMITED.items():
-            limited = found(runs, f"first/{arm}/computed_torque/{{task}}/{condition}/{UNTUNED[0]}")[0].run
+            limited = matching_runs(runs, f"first/{arm}/computed_torque/{{task}}/{condition}/{UNTUNED[0]}")[0].run
             for joint, limit in enumerate(limited.config["torque_limits"]["max"], start=1):
                 words = f"limit over need, {ARMS[arm]}, {CONDITIONS[condition]}, joint {joint}"
                 ratios.append(Measured(words, limit / (share * values(exact, f"peak_torque_q{joint}").max())))

@@ -5,8 +5,8 @@ from pathlib import Path
 from typing import Any
 
 from runner.base.data_file import read_data
-from runner.papers.studies.benchmark.cells import ALL_SEEDS, ROUND, Cell, cells
-from runner.papers.study.results import LeftOutError, Runs, found
+from runner.papers.studies.benchmark.cells import ALL_SEEDS, ROUND, BenchmarkCell, cells
+from runner.papers.study.results import LeftOutError, Runs, matching_runs
 from runner.reporting.words import in_words
 from runner.statistics.conclusion import SHARE
 
@@ -28,17 +28,17 @@ def all_cells(
     gains: Sequence[str] = (),
     seeds: slice = ALL_SEEDS,
     after: int = ROUND,
-) -> dict[str, Cell]:
+) -> dict[str, BenchmarkCell]:
     """Return each law's results on an arm, by condition, in one order; see cells. `question` is one of QUESTIONS."""
     key = (arm, question, tuple(gains), seeds.start, seeds.step, after)
-    kept: dict[object, dict[str, Cell]] = runs.derived
+    kept: dict[object, dict[str, BenchmarkCell]] = runs.derived
     if key not in kept:
         made = cells(runs, arm, question, seeds, gains, after=after)
         kept[key] = {condition: made[condition] for condition in (*CONDITIONS, *CHANGES) if condition in made}
     return kept[key]
 
 
-def one_cell(runs: Runs, arm: str, condition: str, question: str = "first", gains: Sequence[str] = ()) -> Cell:
+def one_cell(runs: Runs, arm: str, condition: str, question: str = "first", gains: Sequence[str] = ()) -> BenchmarkCell:
     """Return the results of the laws on an arm under a condition; see all_cells.
 
     Raises:
@@ -74,4 +74,6 @@ def arms_of(runs: Runs) -> list[str]:
 
 def laws_of(runs: Runs, arm: str) -> list[str]:
     """Return the laws that were run on an arm, in the order of the plan."""
-    return list(dict.fromkeys(one.levels["law"] for one in found(runs, f"first/{arm}/{{law}}/{{task}}/exact/untuned")))
+    return list(
+        dict.fromkeys(one.levels["law"] for one in matching_runs(runs, f"first/{arm}/{{law}}/{{task}}/exact/untuned"))
+    )

@@ -7,7 +7,7 @@ from runner.base.arrays import FloatArray
 from runner.controllers.force.admittance_filter import AXES, discretise
 from runner.papers.studies.meca500.figures import displacement, wrenches
 from runner.papers.studies.meca500.plan import law_in
-from runner.papers.study.results import Runs, found
+from runner.papers.study.results import Runs, matching_runs
 from runner.sensing.force_torque import AXES as SENSOR_AXES
 from runner.sensing.force_torque import ForceTorqueConfig
 from runner.sensing.wrench import inverse_wrench_transform
@@ -26,7 +26,7 @@ def moment_parting(run: Run) -> FloatArray:
 
 def noise(runs: Runs, pattern: str) -> list[list[str | float]]:
     """Return the residuals of readings at rest, less bias and true load, with noise and quantisation, by axis."""
-    at_rest = [each.run for each in found(runs, pattern)]
+    at_rest = [each.run for each in matching_runs(runs, pattern)]
     sensor = ForceTorqueConfig.model_validate(at_rest[0].config["wrist_sensor"])
     seen = inverse_wrench_transform(sensor.pose)
     left = np.vstack([wrenches(run, "reading") - wrenches(run, "load") @ seen.T - sensor.bias for run in at_rest])

@@ -29,7 +29,7 @@ class _Arm(Plant):
         self.q[:], self.dq[:] = q, dq
 
 
-class Adaptive(_Arm):
+class AdaptiveStep(_Arm):
     """Dormand and Prince's pair of order 8 with step control (DOP853), on the articulated-body algorithm.
 
     Hairer, Norsett, Wanner, Solving Ordinary Differential Equations I, 2nd edition, 1993, section II.10.

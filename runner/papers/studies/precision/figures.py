@@ -8,7 +8,7 @@ from runner.base.quantities import number, quantity
 from runner.papers.studies.precision.tried import (
     COMPILED,
     PLANTS,
-    Tried,
+    SteppedPlant,
     allowed_error,
     by_steps,
     knee,
@@ -116,28 +116,28 @@ def without(runs: Runs, words: str, what: str, *plants: str) -> Measured:
     return Measured(words, sum(row.count(_NONE[what]) for row in rows(runs, what, *plants)))
 
 
-def large_enough(tried: list[Tried], allowed: float) -> Tried | None:
+def large_enough(tried: list[SteppedPlant], allowed: float) -> SteppedPlant | None:
     """Return the largest step with a tip error, in m, below what is allowed; None if there is none."""
     return next((each for each in tried if each.tip < allowed), None)
 
 
-def _at_knee(tried: list[Tried], _: float) -> str:
+def _at_knee(tried: list[SteppedPlant], _: float) -> str:
     at = knee(tried)
     return _NONE["knee"] if at is None else f"{quantity(at.step, 's')}: {number(at.joints, 2)}"
 
 
-def _at_step(tried: list[Tried], allowed: float) -> str:
+def _at_step(tried: list[SteppedPlant], allowed: float) -> str:
     at = large_enough(tried, allowed)
     return _NONE["step"] if at is None else f"{quantity(at.step, 's')}: {quantity(at.seconds, 's', 2)}"
 
 
-_CELLS: Mapping[str, Callable[[list[Tried], float], str]] = {
+_CELLS: Mapping[str, Callable[[list[SteppedPlant], float], str]] = {
     "order": lambda tried, _: number(order(tried), 3, zeros=True),
     "errors": lambda tried, _: f"{number(tried[0].joints, 2)} to {number(tried[-1].joints, 2)}",
     "knee": _at_knee,
     "step": _at_step,
 }
-_NUMBERS: Mapping[str, Callable[[list[Tried], float], float | None]] = {
+_NUMBERS: Mapping[str, Callable[[list[SteppedPlant], float], float | None]] = {
     "order": lambda tried, _: order(tried),
     "left": lambda tried, _: tried[-1].joints,
     "largest step": lambda tried, allowed: tried[0].tip / allowed,

@@ -22,7 +22,7 @@ from runner.base.errors import StoreError
 from runner.base.machine import this_machine
 from runner.base.trace import Trace
 from runner.config.compose.compose import compose
-from runner.papers.studies.precision.exact import Adaptive, Collocation, energy_drift
+from runner.papers.studies.precision.exact import AdaptiveStep, Collocation, energy_drift
 from runner.papers.study.grids import FILE as RUNS
 from runner.papers.study.grids import Grids
 from runner.plants import Plant
@@ -90,9 +90,9 @@ def _solved(steps: Mapping[str, RunConfig]) -> dict[str, Any]:
     """Return the solution of a case, how far other ways to it are, and Runge-Kutta by Pinocchio, by steps."""
     config = next(iter(steps.values()))
     closed, model, tick = assemble(config), config.arm.model, config.timing.tick
-    exact = _simulated(config, closed, Adaptive(model, tick, _FINEST))
+    exact = _simulated(config, closed, AdaptiveStep(model, tick, _FINEST))
     others = {
-        "tolerance": _simulated(config, closed, Adaptive(model, tick, _COARSER)),
+        "tolerance": _simulated(config, closed, AdaptiveStep(model, tick, _COARSER)),
         "collocation": _simulated(config, closed, Collocation(model, tick)),
     }
     return {

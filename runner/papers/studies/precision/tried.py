@@ -10,7 +10,7 @@ from typing import Any
 import numpy as np
 
 from runner.papers.studies.precision.measure import FILE, PLANT, load
-from runner.papers.study.results import MissingError, Runs, found
+from runner.papers.study.results import MissingError, Runs, matching_runs
 from runner.store import Run
 
 BY_PINOCCHIO, COMPILED = "Runge-Kutta, Pinocchio", "Runge-Kutta, compiled"
@@ -20,7 +20,7 @@ _BAND = 0.01  # of the settling band: an error that is small enough
 
 
 @dataclass(frozen=True)
-class Tried:
+class SteppedPlant:
     """A plant by one step.
 
     Attributes:
@@ -36,33 +36,33 @@ class Tried:
     seconds: float
 
 
-def by_steps(runs: Runs, case: str, arm: str, plant: str) -> list[Tried]:
+def by_steps(runs: Runs, case: str, arm: str, plant: str) -> list[SteppedPlant]:
     """Return a plant by its steps, the largest first."""
     kept = solutions(runs)[f"{case}/{arm}"]
     if plant == BY_PINOCCHIO:
-        return [Tried(float(step), **own) for step, own in kept["interpreted"].items()]
+        return [SteppedPlant(float(step), **own) for step, own in kept["interpreted"].items()]
     name = PLANT if plant == COMPILED else plant
     tried = []
-    for one in found(runs, f"{case}/{arm}/{{plant={name}}}/{{step}}"):
+    for one in matching_runs(runs, f"{case}/{arm}/{{plant={name}}}/{{step}}"):
         step = one.levels["step"]
         if one.run.status == "failed":
-            tried.append(Tried(float(step), np.nan, np.nan, np.nan))
+            tried.append(SteppedPlant(float(step), np.nan, np.nan, np.nan))
             continue
         joints = np.abs(one.run.joints("q") - np.array(kept["q"])).max()
         tip = np.linalg.norm(one.run.vector("tip") - np.array(kept["tip"]), axis=1).max()
         seconds = kept["compiled_seconds"][step] if plant == COMPILED else _seconds(one.run)
-        tried.append(Tried(float(step), float(joints), float(tip), seconds))
+        tried.append(SteppedPlant(float(step), float(joints), float(tip), seconds))
     return tried
 
 
-def order(tried: list[Tried]) -> float | None:
+def order(tried: list[SteppedPlant]) -> float | None:
     """Return the power of the step with which the joint error falls between the two largest steps; None for none."""
     first, second, *_ = tried
     power = np.log(first.joints / second.joints) / np.log(first.step / second.step)
     return None if np.isnan(power) else float(power)
 
 
-def knee(tried: list[Tried]) -> Tried | None:
+def knee(tried: list[SteppedPlant]) -> SteppedPlant | None:
     """Return the step below which the joint error no longer falls in proportion to it; None where it always does."""
     for one, smaller in pairwise(tried):
         if not smaller.joints <= _SLACK * one.joints * smaller.step / one.step:
@@ -72,7 +72,7 @@ def knee(tried: list[Tried]) -> Tried | None:
 
 def allowed_error(runs: Runs, case: str, arm: str) -> float:
     """Return the error of the tip that is taken as small enough, in m."""
-    run = found(runs, f"{case}/{arm}/{{plant={PLANT}}}/{{step}}")[0].run
+    run = matching_runs(runs, f"{case}/{arm}/{{plant={PLANT}}}/{{step}}")[0].run
     return _BAND * float(run.config["robot"]["settling_band"])
 
 

@@ -15,7 +15,7 @@ from runner.papers.studies.thesis.diagrams.workspace import workspace_sphere
 from runner.papers.studies.thesis.equations.derivations.thesis_printed import compare
 from runner.papers.study.measured import Measured
 from runner.papers.study.prose.signals import norm, vector
-from runner.papers.study.results import Runs, found
+from runner.papers.study.results import Runs, matching_runs
 from runner.papers.study.run_values import values
 from runner.reporting.document import Picture, Table
 from runner.reporting.figures import origin
@@ -182,7 +182,7 @@ def around_the_break(runs: Runs, payload: str) -> tuple[str, str]:
     It is broken if the tip's error is above ten times that of the thesis' Mini. Where none works, or none
     is broken, both are one.
     """
-    names = [one.name for one in found(runs, f"mass/{{mass}}/{payload}")]
+    names = [one.name for one in matching_runs(runs, f"mass/{{mass}}/{payload}")]
     limit = runs[f"mass/0.2/{payload}"].median("max_axis_error")
     errors = [runs[name].median("max_axis_error") for name in names]
     broken = [error is None or limit is None or error > _BROKEN * limit for error in errors]
@@ -192,7 +192,7 @@ def around_the_break(runs: Runs, payload: str) -> tuple[str, str]:
 
 def fastest(runs: Runs, pattern: str) -> str:
     """Return the name of the run that settles first among those of a pattern; the first one where none settles."""
-    times = {one.name: one.run.median("settling_time") for one in found(runs, pattern)}
+    times = {one.name: one.run.median("settling_time") for one in matching_runs(runs, pattern)}
     return min(times, key=lambda name: math.inf if times[name] is None else float(times[name] or 0.0))
 
 
@@ -206,7 +206,7 @@ def sag(run: Run) -> float:
 
 def duration_of(runs: Runs, pattern: str, error: Measured, words: str) -> Measured:
     """Return at which duration, between those of a pattern's runs, the largest axis error is that given."""
-    tried = found(runs, pattern)
+    tried = matching_runs(runs, pattern)
     errors = values((one.run for one in tried), "max_axis_error")
     times = [float(one.levels["duration"]) for one in tried]
     return Measured(words, float(np.interp(-float(error.value or 0.0), -errors, times)), "s")

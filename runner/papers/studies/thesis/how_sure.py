@@ -19,7 +19,7 @@ from runner.papers.reporting.published_claims import (
     verdict_on,
 )
 from runner.papers.study.measured import Measured
-from runner.papers.study.results import Runs, found
+from runner.papers.study.results import Runs, matching_runs
 from runner.reporting.document import Curves, Panel, Series
 from runner.reporting.figures import origin
 from runner.reporting.words import PRESET
@@ -35,7 +35,7 @@ _COLORS = {"as_reported": 1, "full_equations": 0}  # palette indices, as in all 
 
 
 @dataclass(frozen=True)
-class Judged:
+class JudgedClaim:
     """A claim under one preset; of a run that failed without it has no value and no verdicts.
 
     Attributes:
@@ -88,7 +88,7 @@ def judge_by_seeds(
     seeds: Mapping[str, Run],
     own: Mapping[str, Run],
     preset: str,
-) -> Judged:
+) -> JudgedClaim:
     """Return a claim judged by seeds.
 
     Args:
@@ -124,7 +124,7 @@ def judge_by_seeds(
     size = int(own[run].config["repetitions"])
     every = np.arange(count)
     drawn = np.random.default_rng(_SEED).integers(0, count, (DRAWN, size)) if count else every
-    return Judged(
+    return JudgedClaim(
         claim=claim,
         preset=preset,
         values=np.where(np.isnan(values), np.inf, values),
@@ -142,10 +142,10 @@ def _values(run: Run, metric: str) -> FloatArray:
     return run.values(metric) if run.metrics else np.zeros(0)
 
 
-def judged(runs: Runs) -> list[Judged]:
+def judged(runs: Runs) -> list[JudgedClaim]:
     """Return every claim under every preset, judged by the seeds of the Runge-Kutta plant."""
     claims = load_claims("thesis")
-    made = found(runs, _RUNS)
+    made = matching_runs(runs, _RUNS)
     given = []
     for preset in PRESET:
         seeds = {one.levels["figure"]: one.run for one in made if one.levels["preset"] == preset}
@@ -154,7 +154,7 @@ def judged(runs: Runs) -> list[Judged]:
     return sorted(given, key=lambda each: each.claim.number)
 
 
-def around_printed(runs: Runs, caption: str, given: Sequence[Judged]) -> Curves:
+def around_printed(runs: Runs, caption: str, given: Sequence[JudgedClaim]) -> Curves:
     """Return simulated values over what they are compared with, between the factors within which a claim matches."""
     numbers = list(dict.fromkeys(each.claim.number for each in given))
     series: list[Series] = []
@@ -169,16 +169,16 @@ def around_printed(runs: Runs, caption: str, given: Sequence[Judged]) -> Curves:
     series += [Series(name, across, np.full(2, factor), "dotted", color=7) for name, factor in limits]
     names = [str(each) for each in numbers]
     panel = Panel("", "claim", "simulated over printed", series, y_log=True, x_names=names)
-    return Curves(caption, [panel], 1, origin(found(runs, _RUNS)[0].run))
+    return Curves(caption, [panel], 1, origin(matching_runs(runs, _RUNS)[0].run))
 
 
-def seeds(given: Sequence[Judged], words: str) -> Measured:
+def seeds(given: Sequence[JudgedClaim], words: str) -> Measured:
     """Return by how many seeds the claims are judged."""
     return Measured(words, max(each.values.size for each in given))
 
 
 def most(
-    given: Sequence[Judged],
+    given: Sequence[JudgedClaim],
     what: Literal["alone", "drawn", "plant"],
     words: str,
     claim: int = 0,
@@ -203,17 +203,17 @@ def most(
     return Measured(words, max(known) if len(known) == len(values) else None, "1" if what == "plant" else "%")
 
 
-def unanimous(given: Sequence[Judged], words: str) -> Measured:
+def unanimous(given: Sequence[JudgedClaim], words: str) -> Measured:
     """Return of how many judgements every single seed says the same."""
     return Measured(words, sum(bool(each.alone) and not each.otherwise(each.alone) for each in given))
 
 
-def other_by_plant(given: Sequence[Judged], words: str) -> Measured:
+def other_by_plant(given: Sequence[JudgedClaim], words: str) -> Measured:
     """Return the number of the study's own verdicts that differ from those of the seeds."""
     return Measured(words, sum(each.verdict != each.own_verdict for each in given))
 
 
-def mostly_moved_by_plant(given: Sequence[Judged], words: str) -> Measured:
+def mostly_moved_by_plant(given: Sequence[JudgedClaim], words: str) -> Measured:
     """Return the median of the factors between the medians on both plants."""
     known = [factor for factor in (each.number("plant") for each in given) if factor is not None]
     return Measured(words, float(np.median(known)) if len(known) == len(given) else None)

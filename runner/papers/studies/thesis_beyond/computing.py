@@ -5,7 +5,7 @@ from collections.abc import Iterable
 from runner.controllers.stability import delay_limit, miss_limit, pattern_limit
 from runner.papers.study.prose.plots import upright
 from runner.papers.study.prose.signals import failed
-from runner.papers.study.results import Runs, found
+from runner.papers.study.results import Runs, matching_runs
 from runner.reporting.document import Series
 from runner.store import Run
 
@@ -33,12 +33,12 @@ def as_predicted(run: Run) -> bool:
 
 def limits(runs: Runs, pattern: str) -> list[Series]:
     """Return an upright line, as long as the axis, at the limit of each of some runs, which differ only in it."""
-    return _upright(bears(one.run) for one in found(runs, pattern))
+    return _upright(bears(one.run) for one in matching_runs(runs, pattern))
 
 
 def miss_limits(runs: Runs, pattern: str) -> list[Series]:
     """Return an upright line at the probability of a miss up to which each rate is stable in the mean square."""
-    return _upright(round(miss_limit(rate(one.run)), 9) for one in found(runs, pattern))
+    return _upright(round(miss_limit(rate(one.run)), 9) for one in matching_runs(runs, pattern))
 
 
 def _upright(places: Iterable[float]) -> list[Series]:

@@ -7,7 +7,7 @@ import numpy as np
 from runner.base.arrays import FloatArray
 from runner.controllers.stability import force_loop_limit
 from runner.papers.study.prose.signals import along
-from runner.papers.study.results import Runs, found
+from runner.papers.study.results import Runs, matching_runs
 from runner.papers.study.run_values import delay_of
 from runner.reporting.document import Series
 from runner.robots.task_space import mass_along, tip_mobility
@@ -116,7 +116,7 @@ def _last(value: object) -> float:
 
 def walls_tried(runs: Runs, name: str, bounce: bool, color: int) -> list[Series]:
     """Return the walls on which runs come to rest, or bounce, as points: period of the law in ms, stiffness in N/m."""
-    tried = [one.run for one in found(runs, "force/limit/{case}/{share}") if bounces(one.run) == bounce]
+    tried = [one.run for one in matching_runs(runs, "force/limit/{case}/{share}") if bounces(one.run) == bounce]
     periods = np.array([1e3 * _last(run.config["controller"]["period"]) for run in tried])
     stiffness = np.array([float(run.config["environment"]["stiffness"]) for run in tried])
     return [Series(name, periods, stiffness, "points", color=color)]

@@ -5,7 +5,7 @@ from scipy.optimize import brute, minimize
 
 from runner.base.arrays import FloatArray
 from runner.papers.studies.xarm7.figures import SHOULDER
-from runner.papers.study.results import Runs, found
+from runner.papers.study.results import Runs, matching_runs
 from runner.reporting.document import Series
 from runner.store import Run
 
@@ -86,7 +86,7 @@ def asked(runs: Runs, group: str, largest: float) -> list[Series]:
 
 def _torques(runs: Runs, group: str) -> tuple[Run, FloatArray, FloatArray]:
     """Return the run without payload, the torques asked of it, and what each kilogram adds, shapes (T, nq)."""
-    light, heavy = (one.run for one in found(runs, f"{group}/{{mass}}"))
+    light, heavy = (one.run for one in matching_runs(runs, f"{group}/{{mass}}"))
     unloaded, loaded = (run.joints("tau") for run in (light, heavy))
     rows = min(len(unloaded), len(loaded))
     kilograms = heavy.config["robot"]["payload"]["mass"] - light.config["robot"]["payload"]["mass"]

@@ -11,10 +11,10 @@ from typing import Any
 from runner.base.quantities import number, quantity
 from runner.papers.study import run_values
 from runner.papers.study.measured import Measured
-from runner.papers.study.results import Runs, axes_of, called, found, other
+from runner.papers.study.results import Runs, axes_of, called, matching_runs, other
 from runner.papers.study.run_values import Signal, config_value, number_of
 from runner.reporting import figures
-from runner.reporting.document import Block, Curves, Formula, Notice, Playback
+from runner.reporting.document import Curves, Formula, Notice, Playback, ReportBlock
 from runner.reporting.plant_step import describe_plant
 from runner.reporting.words import PLANT
 from runner.store import Run
@@ -56,7 +56,7 @@ def desired_motion(
     return figures.desired_motion(runs[run], caption, number, tuple(axes))
 
 
-def failures(runs: Runs, prefix: str) -> list[Block]:
+def failures(runs: Runs, prefix: str) -> list[ReportBlock]:
     """Return a notice that names the failed runs of those whose names begin so; nothing where none failed."""
     return run_values.failures({name: run for name, run in runs.items() if name.startswith(prefix)})
 
@@ -110,7 +110,7 @@ def of_run(
     return Measured(words, None if left_out else what(*chosen), unit)
 
 
-def told(runs: Runs, what: Callable[..., Any], *names: str) -> Any:
+def value_of(runs: Runs, what: Callable[..., Any], *names: str) -> Any:
     """Return the value of a function for a run, or for those that names with axes stand for, failed or not."""
     return what(*_chosen(runs, names))
 
@@ -150,7 +150,7 @@ def each(
             unit,
         )
         for pattern in patterns
-        for one in found(runs, pattern)
+        for one in matching_runs(runs, pattern)
         if only is None or only(one.run)
     ]
 
@@ -161,7 +161,7 @@ def count(runs: Runs, words: str, what: Callable[..., bool] | None, *patterns: s
 
 
 def _chosen(runs: Runs, patterns: Sequence[str]) -> list[Run]:
-    return [one.run for pattern in patterns for one in found(runs, pattern)]
+    return [one.run for pattern in patterns for one in matching_runs(runs, pattern)]
 
 
 def _extreme(chosen: Callable[[list[float]], float], name: str, values: Sequence[Measured]) -> Measured:

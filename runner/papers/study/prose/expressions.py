@@ -14,15 +14,15 @@ from typing import Any
 import numpy as np
 
 from runner.base.errors import RunnerError
-from runner.papers.expressions.evaluator import Budget, Scope
+from runner.papers.expressions.evaluator import OperationBudget, Scope
 from runner.papers.expressions.grammar import ExpressionError, parse
 from runner.papers.expressions.insertions import insertions
 from runner.papers.reporting.claims import Claim
 from runner.papers.study.measured import Condition, Measured
 from runner.papers.study.prose.signals import Quantity
-from runner.papers.study.prose.tables import Column
+from runner.papers.study.prose.tables import RunColumn
 from runner.papers.study.results import MissingError
-from runner.reporting.document import Block, Panel, Section, Series
+from runner.reporting.document import Panel, ReportBlock, Section, Series
 from runner.reporting.table import Number
 
 OPEN, CLOSE = "\uf000", "\uf001"
@@ -34,10 +34,10 @@ _STATEMENT = re.compile(r"\{%|%\}|\{#")
 _SET = re.compile(r"^\{% set (\w+) = (.*?) %\}$", re.MULTILINE | re.DOTALL)
 _BRANCHES = (ast.IfExp, ast.BoolOp, ast.Not)
 _MEMBERS = {Measured: ("value", "shown", "near", "with_other"), Condition: ("holds",), Quantity: ()}
-_HANDED = (Block, Section, Column, Number, Panel, Series, Claim, np.ndarray)
+_HANDED = (ReportBlock, Section, RunColumn, Number, Panel, Series, Claim, np.ndarray)
 
 
-class Values:
+class ChapterValues:
     """The values of a chapter's expressions, each with its line.
 
     Args:
@@ -55,7 +55,7 @@ class Values:
         """The values that the chapter itself gives a name, by that."""
         given = {name: value for name, value in names.items() if name not in functions}
         self._scope = Scope(functions, ChainMap(self.named, given), _MEMBERS, (*_HANDED, *handed))
-        self._file, self._budget = file, Budget()
+        self._file, self._budget = file, OperationBudget()
         self._read = set() if read is None else read
         self._read_by: dict[str, frozenset[str]] = {}
         self.found: list[tuple[Any, int]] = []
@@ -149,7 +149,7 @@ class Values:
                 raise ProseError(self._file, line, f"{source}: {told}")
             others = self._read.copy()
             self._read.clear()
-            value = scope.evaluate(source, Budget() if instead else self._budget)
+            value = scope.evaluate(source, OperationBudget() if instead else self._budget)
             self._read_by[source] = frozenset(self._read).union(*map(self.read_by, names_in(source)))
             self._read |= others
             return value

@@ -13,8 +13,8 @@ from mdit_py_plugins.dollarmath import dollarmath_plugin
 
 from runner.base.quantities import ROUNDING, in_one_unit, number, smaller_units
 from runner.papers.study.measured import Measured
-from runner.papers.study.prose.expressions import PLACEHOLDER, PRIVATE, ProseError, Values
-from runner.reporting.document import Block, Items, Section, Text
+from runner.papers.study.prose.expressions import PLACEHOLDER, PRIVATE, ChapterValues, ProseError
+from runner.reporting.document import Items, ReportBlock, Section, Text
 from runner.reporting.markup import link_text, literal, mark_text
 
 _SENTENCES = re.compile(r"(?<=[.;?!])\s")
@@ -46,7 +46,7 @@ class Heading:
     line: int
 
 
-Piece = Heading | Block | Section
+Piece = Heading | ReportBlock | Section
 """Element of a chapter."""
 
 
@@ -58,7 +58,7 @@ class Paragraphs:
         values: The values of its expressions.
     """
 
-    def __init__(self, file: str, values: Values) -> None:
+    def __init__(self, file: str, values: ChapterValues) -> None:
         self._file, self._values = file, values
         self._parser = MarkdownIt("commonmark", {"html": False}).use(dollarmath_plugin, allow_space=False)
 
@@ -153,10 +153,10 @@ class Paragraphs:
 def _is_block(value: Any) -> bool:
     if isinstance(value, Sequence) and not isinstance(value, str):
         return all(_is_block(each) for each in value)  # of none, as where no run failed, nothing is shown
-    return dataclasses.is_dataclass(value) and isinstance(value, Block | Section)
+    return dataclasses.is_dataclass(value) and isinstance(value, ReportBlock | Section)
 
 
-def values_shown(text: str, values: Values) -> dict[int, str]:
+def values_shown(text: str, values: ChapterValues) -> dict[int, str]:
     """Return the measured values of a text as strings, by placeholder: those of a sentence in one unit if that reads.
 
     Args:
@@ -175,7 +175,7 @@ def values_shown(text: str, values: Values) -> dict[int, str]:
     return shown
 
 
-def filled(text: str, values: Values, file: str, shown: Mapping[int, str], mathematics: bool = False) -> str:
+def filled(text: str, values: ChapterValues, file: str, shown: Mapping[int, str], mathematics: bool = False) -> str:
     """Return a string with its placeholders replaced by their values. No value can become markup.
 
     Args:

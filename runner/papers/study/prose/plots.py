@@ -8,7 +8,7 @@ import numpy as np
 
 from runner.base.arrays import FloatArray
 from runner.base.errors import RunnerError
-from runner.papers.study.results import Runs, axes_of, called, found, other
+from runner.papers.study.results import Runs, axes_of, called, matching_runs, other
 from runner.papers.study.run_values import Signal, number_of, trace_of
 from runner.reporting.document import Curves, Map, Maps, Panel, Series
 from runner.reporting.figures import AXES, captioned, origin
@@ -48,7 +48,7 @@ def line(
         x: The signal that replaces the time.
     """
     series = []
-    for index, each in enumerate(found(runs, pattern)):
+    for index, each in enumerate(matching_runs(runs, pattern)):
         values = factor * trace_of(signal, each.run, *(other(runs, twin, each.levels) for twin in others))
         t = each.run.t[: len(values)]
         shown = t <= np.inf if until is None else t <= until + 1e-9
@@ -110,7 +110,7 @@ def over(
         raise RunnerError(f"the pattern {pattern} has no axis '{axis}'; axes: {', '.join(axes_of(pattern)) or 'none'}")
     curves: dict[tuple[str, ...], list[tuple[float, float, float, float]]] = {}
     levels: dict[tuple[str, ...], Mapping[str, str]] = {}
-    for each in found(runs, pattern):
+    for each in matching_runs(runs, pattern):
         key = tuple(level for own, level in each.levels.items() if own != axis)
         points = curves.setdefault(key, [])
         levels[key] = each.levels
@@ -152,7 +152,7 @@ def points(
         where: What that function is of these runs.
         color: Index of their color; None takes the next one.
     """
-    shown = [each for each in found(runs, pattern) if only is None or only(each.run) is where]
+    shown = [each for each in matching_runs(runs, pattern) if only is None or only(each.run) is where]
     places = [(x(each.run) if callable(x) else float(each.levels[x]),
                y(each.run, *(other(runs, twin, each.levels) for twin in others))) for each in shown]  # fmt: skip
     across, up = np.array(places, float).reshape(-1, 2).T
@@ -255,11 +255,11 @@ def heat_map(
 ) -> Maps:
     """Return a number of runs over two axes, a map for each combination of the pattern's other axes."""
     panels: dict[tuple[str, ...], dict[tuple[str, str], Run]] = {}
-    for each in found(runs, pattern, (y, x)):
+    for each in matching_runs(runs, pattern, (y, x)):
         key = tuple(level for axis, level in each.levels.items() if axis not in (x, y))
         panels.setdefault(key, {})[each.levels[y], each.levels[x]] = each.run
     maps = [_map(" ".join(key), cells, what, x_label or x, y_label or y) for key, cells in panels.items()]
-    return Maps(caption, value_label, maps, log, min(2, len(maps)), origin(found(runs, pattern)[0].run, number))
+    return Maps(caption, value_label, maps, log, min(2, len(maps)), origin(matching_runs(runs, pattern)[0].run, number))
 
 
 def _map(title: str, cells: Mapping[tuple[str, str], Run], what: Signal, x_label: str, y_label: str) -> Map:

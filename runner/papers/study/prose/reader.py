@@ -7,9 +7,9 @@ from typing import Any
 
 from runner.base.errors import nearest, unknown
 from runner.papers.study.measured import ANSWERS, Condition, Finding, finding
-from runner.papers.study.prose.expressions import ProseError, Values
+from runner.papers.study.prose.expressions import ChapterValues, ProseError
 from runner.papers.study.prose.paragraphs import Heading, Paragraphs, Piece
-from runner.reporting.document import Block, NoticeKind, Section, Text
+from runner.reporting.document import NoticeKind, ReportBlock, Section, Text
 
 _CONTAINERS = ("finding", *ANSWERS)
 _FENCE = ":::"
@@ -59,7 +59,7 @@ class Reading:
     """
 
     section: Section
-    values: Values
+    values: ChapterValues
     boxes: list[Box]
 
     @property
@@ -109,7 +109,7 @@ def read_chapter(
     Raises:
         ProseError: if it cannot be read; names the line, and what to write.
     """
-    values = Values(file, names, handed, read)
+    values = ChapterValues(file, names, handed, read)
     boxes: list[Box] = []
     pieces = list(_pieces(file, values.put_away(text), values, boxes))
     if not pieces or not isinstance(pieces[0], Heading) or pieces[0].level != 1:
@@ -117,7 +117,7 @@ def read_chapter(
     return Reading(_section(file, pieces), values, boxes)
 
 
-def _pieces(file: str, text: str, values: Values, boxes: list[Box]) -> Iterator[Piece]:
+def _pieces(file: str, text: str, values: ChapterValues, boxes: list[Box]) -> Iterator[Piece]:
     """Yield headings, blocks and findings in reading order."""
     paragraphs = Paragraphs(file, values)
     plain: list[str] = []
@@ -171,7 +171,7 @@ def _about(file: str, text: str, number: int) -> list[str]:
     return names
 
 
-def _finding(file: str, box: _Container, values: Values, paragraphs: Paragraphs) -> Finding:
+def _finding(file: str, box: _Container, values: ChapterValues, paragraphs: Paragraphs) -> Finding:
     conditions = [own for stated in box.conditions for own in conditions_of(file, stated, values)]
     if not conditions:
         raise ProseError(file, box.line, "a finding without a condition; write `holds: EXPRESSION` for each sentence")
@@ -184,7 +184,7 @@ def _finding(file: str, box: _Container, values: Values, paragraphs: Paragraphs)
 
 
 def conditions_of(
-    file: str, stated: Stated, values: Values, instead: Mapping[str, Any] | None = None
+    file: str, stated: Stated, values: ChapterValues, instead: Mapping[str, Any] | None = None
 ) -> list[Condition]:
     """Return the condition that an expression states, or each of a list of them.
 
@@ -209,7 +209,7 @@ def _section(file: str, pieces: list[Piece]) -> Section:
     """Return the section that begins with a heading, with those below it."""
     heading = pieces[0]
     assert isinstance(heading, Heading)  # noqa: S101 - ensured by the callers
-    blocks: list[Block] = []
+    blocks: list[ReportBlock] = []
     below: list[list[Piece] | Section] = []
     for piece in pieces[1:]:
         if isinstance(piece, Heading) and piece.level <= heading.level:

@@ -8,7 +8,7 @@ from typing import Literal
 from runner.base.errors import RunnerError, nearest
 from runner.base.quantities import above_rounding, label_with_unit, number, smaller_units
 from runner.papers.study.measured import Measured
-from runner.papers.study.results import Found, Runs, axes_of, called, found, other
+from runner.papers.study.results import MatchedRun, Runs, axes_of, called, matching_runs, other
 from runner.papers.study.run_values import Signal
 from runner.reporting import table as typed
 from runner.reporting.document import Origin, Table
@@ -22,7 +22,7 @@ _NUMBER = re.compile(r"[-−]?\d")
 
 
 @dataclass(frozen=True)
-class Column:
+class RunColumn:
     """A column of a table over runs.
 
     Attributes:
@@ -33,12 +33,12 @@ class Column:
     """
 
     title: str
-    cell: Callable[[Runs, Found], Cell]
+    cell: Callable[[Runs, MatchedRun], Cell]
     metric: str = ""
     levels: Mapping[str, Sequence[str]] = field(default_factory=dict)
 
 
-def level(axis: str, title: str = "", words: Mapping[str, str] | None = None, missing: str = "–") -> Column:
+def level(axis: str, title: str = "", words: Mapping[str, str] | None = None, missing: str = "–") -> RunColumn:
     """Return a column with the level of an axis.
 
     Args:
@@ -48,10 +48,10 @@ def level(axis: str, title: str = "", words: Mapping[str, str] | None = None, mi
         missing: What stands for runs of a pattern without that axis.
     """
 
-    def text(_runs: Runs, row: Found) -> str:
+    def text(_runs: Runs, row: MatchedRun) -> str:
         return called(f"{{{axis}}}", row.levels, words or {}) if axis in row.levels else missing
 
-    return Column(title or axis, text, levels={axis: ()})
+    return RunColumn(title or axis, text, levels={axis: ()})
 
 
 def column(
@@ -62,7 +62,7 @@ def column(
     rounding: float | None = None,
     only: Mapping[str, str | Sequence[str]] | None = None,
     though_failed: bool = False,
-) -> Column:
+) -> RunColumn:
     """Return a column with a number of each run.
 
     A failed run says so; a settling time without a value is "never", another number without one a dash.
@@ -78,7 +78,7 @@ def column(
         though_failed: Whether what a function reads of a run until it failed is shown.
     """
 
-    def found_cell(runs: Runs, row: Found) -> Cell:
+    def found_cell(runs: Runs, row: MatchedRun) -> Cell:
         if any(row.levels.get(axis) not in own for axis, own in chosen.items()):
             return Number(None)
         of = [other(runs, name, row.levels) for name in others] or [row.run]
@@ -88,14 +88,14 @@ def column(
         )
 
     chosen = {axis: [own] if isinstance(own, str) else own for axis, own in (only or {}).items()}
-    return Column(title, found_cell, what if isinstance(what, str) else "", chosen)
+    return RunColumn(title, found_cell, what if isinstance(what, str) else "", chosen)
 
 
 def table(
     runs: Runs,
     caption: str,
     pattern: str | Sequence[str],
-    *columns: Column,
+    *columns: RunColumn,
     by: Sequence[str] = (),
     number: str = "",
 ) -> Table:
@@ -110,7 +110,9 @@ def table(
         number: Its number in the source.
     """
     patterns = [pattern] if isinstance(pattern, str) else pattern
-    rows = [row for each in patterns for row in found(runs, each, [axis for axis in by if axis in axes_of(each)])]
+    rows = [
+        row for each in patterns for row in matching_runs(runs, each, [axis for axis in by if axis in axes_of(each)])
+    ]
     for each in columns:
         _check_levels(each, rows)
     cells = {(row.run.hash, tuple(each.cell(runs, row) for each in columns)): None for row in rows}
@@ -118,7 +120,7 @@ def table(
     return _table(caption, header, [own for _, own in cells], origin(rows[0].run, number))
 
 
-def _check_levels(given: Column, rows: Sequence[Found]) -> None:
+def _check_levels(given: RunColumn, rows: Sequence[MatchedRun]) -> None:
     """Refuse a column about an axis or a level that no row has."""
     for axis, levels in given.levels.items():
         axes = dict.fromkeys(own for row in rows for own in row.levels)
@@ -142,7 +144,7 @@ def comparison(
     """Return a table with a row for each metric and a column for each level of a pattern's axis, such as presets."""
     if len(axes_of(pattern)) != 1:
         raise RunnerError(f"'{pattern}': a comparison goes over one axis in braces")
-    shown = found(runs, pattern)
+    shown = matching_runs(runs, pattern)
     rows = [[title(metric), *(_with_unit(metric, each.run) for each in shown)] for metric in metrics]
     header = ["metric", *(called(f"{{{axes_of(pattern)[0]}}}", each.levels, words or {}) for each in shown)]
     return Table(caption, header, rows, origin(shown[0].run, number), prose=True)
@@ -199,7 +201,7 @@ def _cell(value: Cell | float | Measured | None, digits: int = 3) -> Cell:
     return Number(value.value if isinstance(value, Measured) else value, digits=digits)
 
 
-def _header(given: Column, rows: Sequence[Found]) -> str:
+def _header(given: RunColumn, rows: Sequence[MatchedRun]) -> str:
     if not given.metric or given.title.endswith(")"):
         return given.title
     return label_with_unit(given.title, next((_unit(row.run, given.metric) for row in rows if row.run.metrics), "1"))

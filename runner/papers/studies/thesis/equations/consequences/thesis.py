@@ -9,7 +9,7 @@ from runner.papers.audit.consequence import Consequence
 from runner.papers.audit.derivations import along
 from runner.papers.audit.entry import values_at
 from runner.papers.studies.thesis.equations.derivations import thesis_measures
-from runner.papers.studies.thesis.equations.derivations.thesis_arms import COMBINED, MACRO, MINI, Arm
+from runner.papers.studies.thesis.equations.derivations.thesis_arms import COMBINED, MACRO, MINI, ThesisArm
 from runner.papers.studies.thesis.equations.derivations.thesis_jacobians import frame_symbols
 from runner.papers.studies.thesis.equations.derivations.thesis_kinematics import tip_pose
 from runner.trajectories.motion import quintic_motion
@@ -27,7 +27,7 @@ _POSTURE = (0.0, -0.4)  # rad, joints 1 and 2 of the Macro held by its gravity t
 Jacobian = Callable[[FloatArray], FloatArray]
 
 
-def _follow(arm: Arm, jacobian: Jacobian) -> tuple[FloatArray, FloatArray, FloatArray]:
+def _follow(arm: ThesisArm, jacobian: Jacobian) -> tuple[FloatArray, FloatArray, FloatArray]:
     """Return times, joint positions and distances from the path of an arm led along the thesis' quintic by joint rates.
 
     The joints move at J^+ (dx_d + k (x_d - x)), with the given J and the tip's true position, from home.
@@ -47,7 +47,7 @@ def _follow(arm: Arm, jacobian: Jacobian) -> tuple[FloatArray, FloatArray, Float
     return times, q, missed
 
 
-def _right(arm: Arm) -> Jacobian:
+def _right(arm: ThesisArm) -> Jacobian:
     return lambda q: arm.model.tip_jacobian(q)[:3]
 
 

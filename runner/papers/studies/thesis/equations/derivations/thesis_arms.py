@@ -27,7 +27,7 @@ _HALF = np.pi / 2
 
 
 @dataclass(frozen=True, eq=False)
-class Arm:
+class ThesisArm:
     """An arm by the measures of the thesis, its joints among the six of a sample.
 
     Attributes:
@@ -122,13 +122,13 @@ class Arm:
 
 _HOME, _TWISTS = (_HALF, 0.0, _HALF), (_HALF, 0.0, _HALF)
 
-MACRO = Arm("macro", slice(0, 3), _HOME, (0.0, 0.0, 0.0), (0.0, 1.0, 1.0), _TWISTS, (0.0, 1.0, 1.0))
+MACRO = ThesisArm("macro", slice(0, 3), _HOME, (0.0, 0.0, 0.0), (0.0, 1.0, 1.0), _TWISTS, (0.0, 1.0, 1.0))
 """The Macro of Tables 2.1 and 3.1."""
 
-MINI = Arm("mini", slice(3, 6), _HOME, (0.0, 0.0, 0.0), (0.0, 0.1, 0.1), _TWISTS, (0.0, 0.1, 0.1))
+MINI = ThesisArm("mini", slice(3, 6), _HOME, (0.0, 0.0, 0.0), (0.0, 0.1, 0.1), _TWISTS, (0.0, 0.1, 0.1))
 """The Mini of Tables 2.1 and 4.1, with frame 3 as its base."""
 
-COMBINED = Arm(
+COMBINED = ThesisArm(
     "combined",
     slice(0, 6),
     (_HALF, 0.0, np.pi, np.pi, 0.0, _HALF),

@@ -8,18 +8,18 @@ import numpy as np
 from runner.base.arrays import FloatArray
 from runner.papers.audit.derivations import Derivations, Elements, Symbols
 from runner.papers.audit.model_derivations import AuditedArm, Dynamics, by_model
-from runner.papers.studies.thesis.equations.derivations.thesis_arms import MACRO, MINI, Arm
+from runner.papers.studies.thesis.equations.derivations.thesis_arms import MACRO, MINI, ThesisArm
 from runner.robots.model import RobotModel
 
 _SHAPE = np.diag([0.02, 0.05, 0.09])  # of m L^2, about the masses of links 2 and 3, along the axes of the link
 
 
-def _tensor(arm: Arm) -> FloatArray:
+def _tensor(arm: ThesisArm) -> FloatArray:
     return _SHAPE * arm.masses[2] * arm.a[2] ** 2
 
 
 @lru_cache(maxsize=2)
-def _turning(arm: Arm) -> AuditedArm:
+def _turning(arm: ThesisArm) -> AuditedArm:
     """Return an arm with links 2 and 3 that resist turning."""
     tree = ET.fromstring(arm.audited.urdf)  # noqa: S314 - a text of ours
     for link in tree.iter("link"):
@@ -30,11 +30,11 @@ def _turning(arm: Arm) -> AuditedArm:
     return AuditedArm(RobotModel(urdf, "tip"), urdf, arm.audited.joints)
 
 
-def _at(arm: Arm, frame: str) -> Dynamics:
+def _at(arm: ThesisArm, frame: str) -> Dynamics:
     return by_model(arm.audited.at(frame).model)
 
 
-def tensor_symbols(arm: Arm, q: FloatArray) -> Symbols:
+def tensor_symbols(arm: ThesisArm, q: FloatArray) -> Symbols:
     """Return rotations `R_C_i` of an arm's links, and inertias.
 
     `I_xx_i` to `I_zz_i` are of links that resist turning, about the axes of the link; `I_own_i` and `D_own_i`, all
@@ -55,12 +55,12 @@ mass_matrix, mini_mass_matrix = (_turning(arm).derivations("model.mass_matrix") 
 # The tensors of the thesis' own links: zero.
 
 
-def _by_link(arm: Arm, tensors: FloatArray, s: Symbols) -> Elements:
+def _by_link(arm: ThesisArm, tensors: FloatArray, s: Symbols) -> Elements:
     first = arm.joints.start + 1
     return {f"I_own_{i}": np.tile(tensor, (len(s["q1"]), 1, 1)) for i, tensor in enumerate(tensors, start=first)}
 
 
-def _tensors(arm: Arm) -> Derivations:
+def _tensors(arm: ThesisArm) -> Derivations:
     def by_model(s: Symbols) -> Elements:
         tensors = np.array([inertia.inertia for inertia in list(arm.model.pin_model.inertias)[1:]])
         return _by_link(arm, tensors, s)

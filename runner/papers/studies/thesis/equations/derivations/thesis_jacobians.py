@@ -16,14 +16,14 @@ from runner.papers.audit.derivations import (
 )
 from runner.papers.audit.model_derivations import Dynamics, by_model
 from runner.papers.studies.thesis.equations.derivations import thesis_measures
-from runner.papers.studies.thesis.equations.derivations.thesis_arms import MACRO, MINI, Arm
+from runner.papers.studies.thesis.equations.derivations.thesis_arms import MACRO, MINI, ThesisArm
 from runner.papers.studies.thesis.equations.derivations.thesis_inertia import tensor_symbols
 from runner.papers.studies.thesis.equations.derivations.thesis_kinematics import model_frame, tip_pose
 
 # Axes of the joints: frame i lies on the axis of joint i+1.
 
 
-def _axis(arm: Arm, frame: int) -> Derivations:
+def _axis(arm: ThesisArm, frame: int) -> Derivations:
     name = f"Z_{arm.joints.start + frame}"
     return Derivations(
         lambda s: {name: by_model(arm.model).jacobian(arm.q(s))[:, 3:, frame]},
@@ -40,7 +40,7 @@ joint_axes = MACRO.both(lambda d, s: {f"Z_{i}": d.jacobian(MACRO.q(s))[:, 3:, i]
 # Velocity.
 
 
-def _velocity(arm: Arm, rows: slice) -> Derivations:
+def _velocity(arm: ThesisArm, rows: slice) -> Derivations:
     def by_motion(s: Symbols) -> Elements:
         q, dq, start = arm.q(s), arm.dq(s), np.zeros((len(s["q1"]), 1))
         return {"v": jacobian_by_differences(lambda time: tip_pose(arm, q + time * dq), start)[:, rows, 0]}
@@ -59,7 +59,7 @@ macro_velocity, mini_velocity = _velocity(MACRO, slice(0, 3)), _velocity(MINI, s
 # The symbols of the general formulas.
 
 
-def frame_symbols(arm: Arm, q: FloatArray) -> dict[str, FloatArray]:
+def frame_symbols(arm: ThesisArm, q: FloatArray) -> dict[str, FloatArray]:
     """Return axes `Z_i`, rotations `R_i` and vectors `P_ij` from origin to origin; E and n are frame 3 of the Macro."""
     frames = {str(i + arm.joints.start): model_frame(arm, i, q) for i in range(4)}
     ends = [*frames.items(), ("E", frames[str(arm.joints.stop)]), ("n", frames[str(arm.joints.stop)])]
@@ -68,7 +68,7 @@ def frame_symbols(arm: Arm, q: FloatArray) -> dict[str, FloatArray]:
     return values | {f"P_{i}{j}": end[:, :3, 3] - start[:, :3, 3] for i, start in frames.items() for j, end in ends}
 
 
-def _jacobian_symbols(arm: Arm, q: FloatArray) -> dict[str, FloatArray]:
+def _jacobian_symbols(arm: ThesisArm, q: FloatArray) -> dict[str, FloatArray]:
     """Return the linear and angular Jacobians `J_v_i` and `J_w_i` of the end of each link."""
     found = {i: arm.end_jacobian(i, q) for i in (1, 2, 3)}
     first = arm.joints.start

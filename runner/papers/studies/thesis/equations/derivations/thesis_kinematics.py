@@ -22,27 +22,27 @@ from runner.papers.audit.derivations import (
 )
 from runner.papers.audit.model_derivations import by_model
 from runner.papers.studies.thesis.denavit_hartenberg import DenavitHartenbergRow, denavit_hartenberg, frames, transform
-from runner.papers.studies.thesis.equations.derivations.thesis_arms import MACRO, MINI, Arm
+from runner.papers.studies.thesis.equations.derivations.thesis_arms import MACRO, MINI, ThesisArm
 
 METHODS = ("Denavit-Hartenberg frames placed on the model's joint axes", "product of elementary turns and shifts")
 
 
 @lru_cache(maxsize=4)
-def _rows(arm: Arm) -> tuple[DenavitHartenbergRow, ...]:
+def _rows(arm: ThesisArm) -> tuple[DenavitHartenbergRow, ...]:
     return denavit_hartenberg(arm.model)
 
 
-def model_step(arm: Arm, link: int, q: FloatArray) -> FloatArray:
+def model_step(arm: ThesisArm, link: int, q: FloatArray) -> FloatArray:
     """Return the transform from frame i = link to frame i-1, from the model, shape (T, 4, 4)."""
     return np.array([transform(_rows(arm)[link - 1], float(q_i)) for q_i in q[:, link - 1]])
 
 
-def model_frame(arm: Arm, link: int, q: FloatArray) -> FloatArray:
+def model_frame(arm: ThesisArm, link: int, q: FloatArray) -> FloatArray:
     """Return frame i = link in the base frame, from the model, shape (T, 4, 4)."""
     return np.array([frames(_rows(arm), row)[link] for row in q])
 
 
-def tip_pose(arm: Arm, q: FloatArray) -> FloatArray:
+def tip_pose(arm: ThesisArm, q: FloatArray) -> FloatArray:
     """Return the tip's transforms by Pinocchio, shape (T, 4, 4)."""
     return by_model(arm.model).pose(q)
 
@@ -50,7 +50,9 @@ def tip_pose(arm: Arm, q: FloatArray) -> FloatArray:
 # Transforms.
 
 
-def _transforms(model: Callable[..., FloatArray], chain: Callable[..., FloatArray], arm: Arm, link: int) -> Derivations:
+def _transforms(
+    model: Callable[..., FloatArray], chain: Callable[..., FloatArray], arm: ThesisArm, link: int
+) -> Derivations:
     return Derivations(
         lambda s: whole_and_elements("T", model(arm, link, arm.q(s))),
         lambda s: whole_and_elements("T", chain(arm, link, arm.q(s))),
@@ -58,9 +60,9 @@ def _transforms(model: Callable[..., FloatArray], chain: Callable[..., FloatArra
     )
 
 
-macro_step_1, macro_step_2, macro_step_3 = (_transforms(model_step, Arm.step, MACRO, link) for link in (1, 2, 3))
-mini_step_1, mini_step_2, mini_step_3 = (_transforms(model_step, Arm.step, MINI, link) for link in (1, 2, 3))
-macro_frame_2, mini_frame_2 = (_transforms(model_frame, Arm.frame, arm, 2) for arm in (MACRO, MINI))
+macro_step_1, macro_step_2, macro_step_3 = (_transforms(model_step, ThesisArm.step, MACRO, link) for link in (1, 2, 3))
+mini_step_1, mini_step_2, mini_step_3 = (_transforms(model_step, ThesisArm.step, MINI, link) for link in (1, 2, 3))
+macro_frame_2, mini_frame_2 = (_transforms(model_frame, ThesisArm.frame, arm, 2) for arm in (MACRO, MINI))
 
 
 def _any_link(s: Symbols) -> FloatArray:
@@ -87,7 +89,7 @@ any_link = Derivations(
 # Tables.
 
 
-def _table(arm: Arm) -> Derivation:
+def _table(arm: ThesisArm) -> Derivation:
     def rows(s: Symbols) -> Elements:
         found: dict[str, FloatArray] = {}
         for place, (number, row) in enumerate(zip(_numbers(arm), _rows(arm), strict=True)):
@@ -99,7 +101,7 @@ def _table(arm: Arm) -> Derivation:
     return rows
 
 
-def _table_by_axes(arm: Arm) -> Derivation:
+def _table_by_axes(arm: ThesisArm) -> Derivation:
     """Return the same from the joint axes and origins at each sample, by the rules of section 3.1.
 
     Joint axes 1 and 2 intersect, so x_1 lies along z_0 x z_1; axes 2 and 3 are parallel, so x_2 runs from one to the
@@ -128,7 +130,7 @@ def _table_by_axes(arm: Arm) -> Derivation:
     return rows
 
 
-def _numbers(arm: Arm) -> range:
+def _numbers(arm: ThesisArm) -> range:
     return range(arm.joints.start + 1, arm.joints.stop + 1)
 
 
@@ -136,7 +138,7 @@ def _angle(start: FloatArray, end: FloatArray, axis: FloatArray) -> FloatArray:
     return np.asarray(np.arctan2((np.cross(start, end) * axis).sum(axis=1), (start * end).sum(axis=1)))
 
 
-def _entries(arm: Arm, letters: tuple[str, str]) -> Derivations:
+def _entries(arm: ThesisArm, letters: tuple[str, str]) -> Derivations:
     """Return the two columns of an arm's table whose names begin so."""
 
     def only(rows: Derivation) -> Derivation:

@@ -8,7 +8,7 @@ from runner.base.arrays import FloatArray
 from runner.papers.audit.derivations import Derivations, Elements, Symbols, product, rotation
 from runner.papers.audit.model_derivations import by_model
 from runner.papers.studies.thesis.equations.derivations import thesis
-from runner.papers.studies.thesis.equations.derivations.thesis_arms import COMBINED, MACRO, MINI, Arm
+from runner.papers.studies.thesis.equations.derivations.thesis_arms import COMBINED, MACRO, MINI, ThesisArm
 from runner.papers.studies.thesis.equations.derivations.thesis_kinematics import model_step, tip_pose
 
 _BASE_OF_MINI = np.array([[0.0, 0.0, 1.0], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0]])  # 3_R_3', from the Mini's base
@@ -18,14 +18,14 @@ def _still(values: dict[str, float], s: Symbols) -> Elements:
     return {name: np.full(len(s["q1"]), value) for name, value in values.items()}
 
 
-def _home(arm: Arm) -> FloatArray:
+def _home(arm: ThesisArm) -> FloatArray:
     return np.zeros((1, arm.joints.stop - arm.joints.start))
 
 
 # Table 2.1.
 
 
-def _lengths(arm: Arm) -> Derivations:
+def _lengths(arm: ThesisArm) -> Derivations:
     def by_origins(s: Symbols) -> Elements:
         model = arm.model
         origins = model.frame_poses(_home(arm)[0], (*model.joint_names, model.tip_name))[:, :3, 3]
@@ -46,7 +46,7 @@ def _lengths(arm: Arm) -> Derivations:
     )
 
 
-def _masses(arm: Arm) -> Derivations:
+def _masses(arm: ThesisArm) -> Derivations:
     numbers = [arm.joints.start + i for i in (1, 2, 3)]
 
     def by_links(s: Symbols) -> Elements:
@@ -70,7 +70,7 @@ macro_masses, mini_masses = _masses(MACRO), _masses(MINI)
 # Workspace and home.
 
 
-def _reach(arm: Arm) -> Derivations:
+def _reach(arm: ThesisArm) -> Derivations:
     def by_search(s: Symbols) -> Elements:
         q3 = np.linspace(-np.pi, np.pi, 721)
         tips = arm.frame(3, np.column_stack([0 * q3, 0 * q3, q3]))[:, :3, 3]
@@ -83,7 +83,7 @@ def _reach(arm: Arm) -> Derivations:
     )
 
 
-def _at_home(arm: Arm) -> Derivations:
+def _at_home(arm: ThesisArm) -> Derivations:
     return arm.both(lambda d, s: {"x": np.tile(d.pose(_home(arm))[0, :3, 3], (len(s["q1"]), 1))})
 
 

@@ -9,7 +9,7 @@ import numpy as np
 from runner.base.arrays import FloatArray
 from runner.papers.audit.derivations import Derivations, Elements, Symbols, along, columns, derivative
 from runner.papers.audit.entry import parts, right_elements
-from runner.papers.audit.evaluation import Values
+from runner.papers.audit.evaluation import SampleValues
 from runner.papers.audit.model_derivations import Dynamics, by_model, by_urdf
 from runner.papers.studies.thesis.equations.derivations import thesis_printed as printed
 from runner.papers.studies.thesis.equations.derivations.thesis import regular_symbols
@@ -106,8 +106,8 @@ def _closed(control_input: str, desired: str = "") -> Derivations:
 
     def torque(s: Symbols) -> FloatArray:
         known = right_elements(next(part for part in parts("thesis") if part.path.name == "3_3.yaml"))
-        wanted = Values(s, known)[control_input]
-        return Values({**s, "F_star": wanted}, known)["tau"]
+        wanted = SampleValues(s, known)[control_input]
+        return SampleValues({**s, "F_star": wanted}, known)["tau"]
 
     def named(acceleration: FloatArray, s: Symbols) -> Elements:
         return {"ddx": acceleration, "ddeps_d" if desired else "ddeps": acceleration - (s[desired] if desired else 0.0)}

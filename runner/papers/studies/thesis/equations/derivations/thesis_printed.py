@@ -9,7 +9,7 @@ from runner.papers.audit.derivations import along
 from runner.papers.audit.entry import entries
 from runner.papers.audit.evaluation import evaluate
 from runner.papers.audit.model_derivations import by_model
-from runner.papers.expressions.parser import Expression, parse
+from runner.papers.expressions.parser import ParsedExpression, parse
 from runner.papers.studies.thesis.equations.derivations.thesis import symbols_at
 from runner.robots.model import RobotModel
 
@@ -17,9 +17,9 @@ _OF_MINI = {"v_M": "v_m", "J_M": "J_m", "0TE": "3T6"}  # the others end in -mini
 
 
 @lru_cache(maxsize=32)
-def _expression(name: str) -> Expression:
+def _expression(name: str) -> ParsedExpression:
     entry = next(entry for _, entry in entries("thesis") if entry.id == f"thesis-{name}")
-    (text,) = entry.right.elements.values()
+    (text,) = entry.true_form.elements.values()
     return parse(text)
 
 

@@ -124,7 +124,7 @@ def _entries() -> Mapping[str, Entry]:
 def _value(name: str, right: bool, values: Mapping[str, FloatArray]) -> FloatArray:
     """Return a formula's value as printed, or put right where it is wrong."""
     entry = _entries()[name]
-    form = entry.right if right else entry.emendation or entry.printed
+    form = entry.true_form if right else entry.emendation or entry.printed
     return evaluate(parse(form.elements[name]), values)
 
 
