@@ -124,9 +124,8 @@ class Plan(ABC):
         return template
 
     def _compose(self, options: Sequence[str], keys: Sequence[SweptKey], root: str) -> Template | ConfigError:
-        own = self._source.config_dirs
         try:
-            return Template(self._source.load(options, root), root, own, keys)
+            return Template(self._source, options, root, keys)
         except ConfigError as error:
             return error
 

@@ -47,7 +47,7 @@ def read_unresolved(overrides: Sequence[str], config_dirs: Sequence[Path], root:
     Raises:
         ConfigError: see `Composer.load`.
     """
-    found = _from_kept(overrides, tuple(config_dirs), root)
+    found = read_kept(overrides, tuple(config_dirs), root)
     if found is None:
         from runner.config.compose.composer import Composer
 
@@ -64,8 +64,8 @@ def from_hydra(config: "DictConfig") -> Unresolved:
     return Unresolved(values, hydra["runtime"]["choices"], hydra["sweeper"].get("params") or {})
 
 
-def _from_kept(overrides: Sequence[str], config_dirs: tuple[Path, ...], root: str) -> Unresolved | None:
-    """Return the config of plain overrides from kept options; None if Hydra must compose it."""
+def read_kept(overrides: Sequence[str], config_dirs: tuple[Path, ...], root: str) -> Unresolved | None:
+    """Return the config of plain overrides from kept options; None if Hydra must compose it. See `read_unresolved`."""
     options: list[str] = []
     values: list[tuple[str, Any]] = []
     known = groups(config_dirs)

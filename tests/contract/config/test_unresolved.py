@@ -36,7 +36,7 @@ def _own_cache(code_cache):
 
 def by_hydra(line, monkeypatch):
     with monkeypatch.context() as patch:
-        patch.setattr(unresolved, "_from_kept", lambda *_: None)
+        patch.setattr(unresolved, "read_kept", lambda *_: None)
         return read_unresolved(line, (), "config")
 
 
@@ -49,7 +49,7 @@ def test_what_is_read_is_what_hydra_composes(options, monkeypatch):
     lines += [(*options, "controler.period=5ms"), (*options, "controller.periode=5ms"), (*options, "durations=3")]
     read = 0
     for line in (options, *lines):
-        found = unresolved._from_kept(line, (), "config")
+        found = unresolved.read_kept(line, (), "config")
         if found is not None:
             read += 1
             wanted = by_hydra(line, monkeypatch)
@@ -91,7 +91,7 @@ def test_any_other_value_is_left_to_hydra(text):
 )
 def test_what_needs_hydra_is_left_to_it(line, monkeypatch):
     by_hydra(("robot=macro",), monkeypatch)
-    assert unresolved._from_kept(line, (), "config") is None
+    assert unresolved.read_kept(line, (), "config") is None
 
 
 def test_a_changed_file_is_composed_again(tmp_path, monkeypatch):
@@ -101,9 +101,9 @@ def test_a_changed_file_is_composed_again(tmp_path, monkeypatch):
     (folder / "mine.yaml").write_text("defaults: [none]\nposition: 1e-3\n")
     line = ("robot=macro", "noise=mine")
     assert read_unresolved(line, (home,), "config").values["noise"]["position"] == 1e-3
-    assert unresolved._from_kept(line, (home,), "config") is not None
+    assert unresolved.read_kept(line, (home,), "config") is not None
     (folder / "mine.yaml").write_text("defaults: [none]\nposition: 2e-3  # other\n")
-    assert unresolved._from_kept(line, (home,), "config") is None
+    assert unresolved.read_kept(line, (home,), "config") is None
     assert read_unresolved(line, (home,), "config").values["noise"]["position"] == 2e-3
 
 

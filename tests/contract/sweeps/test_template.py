@@ -6,7 +6,9 @@ import pytest
 from support.grids import plan_sweep
 
 from runner.base.errors import ConfigError
+from runner.config.compose import unresolved
 from runner.config.compose.compose import compose
+from runner.sweeps import template
 
 INDEPENDENT = [
     ("robot=macro,mini", "noise.position=1e-4,1e-3", "controller.period=0.01,0.02"),
@@ -34,8 +36,17 @@ ENTANGLED = [
 ]
 
 
+@pytest.fixture
+def nothing_kept(monkeypatch):
+    monkeypatch.setattr(template, "read_kept", lambda *_: None)
+
+
+@pytest.mark.parametrize("kept", [False, True], ids=["new", "kept"])
 @pytest.mark.parametrize("arguments", [*INDEPENDENT, *ENTANGLED], ids=" ".join)
-def test_a_cell_is_what_hydra_composes(arguments):
+def test_a_cell_is_what_hydra_composes(arguments, kept, monkeypatch):
+    monkeypatch.setattr(unresolved, "read_kept", lambda *_: None)  # `compose` asks Hydra
+    if not kept:
+        monkeypatch.setattr(template, "read_kept", lambda *_: None)
     plan = plan_sweep(arguments)
     cells = range(len(plan))
     for cell in {0, random.Random(1).choice(cells), len(plan) - 1}:  # both ends change every key with two values
@@ -50,9 +61,10 @@ def test_keys_that_act_on_each_other_are_composed_cell_by_cell(cases, independen
     for arguments in cases:
         plan = plan_sweep(arguments)
         plan.composed(0)
-        assert [template._changes is not None for template in plan._templates.values()] == [independent], arguments
+        assert [each._changes is not None for each in plan._templates.values()] == [independent], arguments
 
 
+@pytest.mark.usefixtures("nothing_kept")
 def test_hydra_composes_once_for_each_combination_of_options(monkeypatch):
     plan = plan_sweep(("robot=macro,mini", "noise=none,thesis", "seed=range(0,50)"))
     loaded = []
@@ -60,6 +72,15 @@ def test_hydra_composes_once_for_each_combination_of_options(monkeypatch):
     monkeypatch.setattr(plan._source, "load", lambda *given: loaded.append(given) or load(*given))
     seeds = {plan.composed(cell).resolved["seed"] for cell in range(len(plan))}
     assert (len(plan), len(loaded), seeds) == (200, 4, {*range(50)})
+
+
+def test_kept_options_need_no_composition(monkeypatch):
+    arguments = ("robot=macro,mini", "noise=none,thesis", "seed=range(0,50)")
+    for cell in range(4):
+        compose(plan_sweep(arguments[:2]).overrides(cell))  # keeps the options
+    plan = plan_sweep(arguments)
+    monkeypatch.setattr(plan._source, "load", None)
+    assert {plan.composed(cell).resolved["seed"] for cell in range(len(plan))} == {*range(50)}
 
 
 def test_a_cell_does_not_change_its_neighbours():
