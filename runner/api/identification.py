@@ -76,12 +76,11 @@ def identify(
         RunnerError: if a log cannot be read, is too short, contradicts the robot or itself, or has torques without
             gravity.
     """
-    from runner.assembly.validation import validate
-    from runner.config.compose.compose import compose
     from runner.identification.examination import examine_logs, read_question
     from runner.identification.friction_kinds import KINDS
     from runner.identification.identify import identify as fit
     from runner.store.kinds import note
+    from runner.sweeps.arm import arm_of
 
     kind = next((each for each in KINDS if each == friction), None)
     if friction is not None and kind is None:
@@ -90,7 +89,7 @@ def identify(
         raise RunnerError(f"prior: not a share ({prior:g}). Allowed: above 0 up to 1.")
     if not logs:
         raise RunnerError("logs: none is given. Allowed: one or more.")
-    arm = validate(compose((f"robot={robot}",), [Path(each) for each in config_dir])).arm
+    arm = arm_of(robot, [Path(each) for each in config_dir])
     maps = [Path(columns)] if isinstance(columns, str | Path) else [Path(each) for each in columns]
     question = read_question(robot, arm.model, arm.urdf, [Path(log) for log in logs], maps, fill_gaps)
     words = ["runner", "identify", *map(str, logs), *(word for each in maps for word in ("--columns", str(each)))]

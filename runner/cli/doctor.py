@@ -73,13 +73,12 @@ def _examine_logs(options: Namespace) -> int:
         raise RunnerError("--output: needs --robot ROBOT, whose joints the column map names.")
     if options.columns is not None and len(options.files) > 1:
         raise RunnerError("--columns: is for one log. Examine the logs one by one.")
-    from runner.assembly.validation import validate
-    from runner.config.compose.compose import compose
     from runner.doctor.log import examine_log
     from runner.doctor.log_files import next_line, write_log_files
     from runner.doctor.log_words import log_lines
+    from runner.sweeps.arm import arm_of
 
-    model = validate(compose((f"robot={options.robot}",), options.config_dir)).arm.model if options.robot else None
+    model = arm_of(options.robot, options.config_dir).model if options.robot else None
     # All before the first is written.
     examined = [examine_log(path, model, options.topic, options.episode, options.columns) for path in options.files]
     asked = False

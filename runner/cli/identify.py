@@ -49,8 +49,6 @@ def _width(text: str) -> float:
 
 def run(options: Namespace) -> int:
     """Print what the logs can determine, then the answer and the parameters; print the folder as the last line."""
-    from runner.assembly.validation import validate
-    from runner.config.compose.compose import compose
     from runner.config.compose.files import outputs_dir
     from runner.identification.examination import examine_logs, read_question
     from runner.identification.identify import identify
@@ -59,8 +57,9 @@ def run(options: Namespace) -> int:
     from runner.reporting.stored import write
     from runner.reporting.table import terminal
     from runner.store.kinds import note
+    from runner.sweeps.arm import arm_of
 
-    arm = validate(compose((f"robot={options.robot}",), options.config_dir)).arm
+    arm = arm_of(options.robot, options.config_dir)
     question = read_question(options.robot, arm.model, arm.urdf, options.logs, options.columns, options.fill_gaps)
     examined = examine_logs(question)
     for line in examination_lines(examined):

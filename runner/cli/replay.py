@@ -14,6 +14,7 @@ from runner.doctor.log import LONGEST_GAP, examine_log
 from runner.doctor.log_files import MAP, MOTION, map_text
 from runner.store import Run
 from runner.sweeps import job
+from runner.sweeps.arm import arm_of
 
 FOLDER = "logs"
 """Folder in the outputs folder of the maps and motions of logs."""
@@ -60,7 +61,7 @@ def replay(
         RunnerError: if the log cannot be read, or has open questions; names them.
         ConfigError: if the robot or controller does not exist, or the run cannot be made.
     """
-    model = validate(compose((f"robot={robot}",), config_dirs)).arm.model
+    model = arm_of(robot, config_dirs).model
     found = examine_log(log, model, given=columns)
     if found.motion is None:
         asked = (
