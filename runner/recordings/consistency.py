@@ -40,6 +40,9 @@ _LENGTHS = ((1e-3, "fits if it is in mm", "unit: mm"), (1e3, "fits if it is in m
 _OFFSET = 1e-3  # m, of the tip, that is reported
 _NO_TIP = 0.25  # r of a tip: a delay of 0.1 s leaves less
 _WORSE = 0.1  # of a torque
+_CLIPPED, _PILE = 0.05, 3.0  # share of rows at a limit, and how many more than near it, of a clipped torque
+_NEAR = 0.1  # of the range of a torque
+_AT_REST = 0.01  # of the largest speed of a joint
 _DOUBTED, _HALVED = 0.1, 0.5  # r from which on the unit of a torque is doubted, and how much less another one leaves
 _OTHER_SCALE = 3.0  # times the model's torque, from which on a unit is doubted
 
@@ -105,6 +108,8 @@ def check_consistency(model: RobotModel, recording: Recording) -> LogVerdict:
     judge = _Judge(model, recording)
     before = judge.lacks(motion)
     chosen, changed = _best(judge, motion, before, list(_meanings(model, recording, motion)))
+    if chosen and (clipped := list(_clipped(model, recording, q, before))):
+        return LogVerdict(tuple(clipped), (), {})
     questions += [_question(meaning, joints, before, judge.lacks(changed)) for meaning in chosen]
     notes = [] if questions else list(_tip_offset(model, judge, motion))
     questions += [] if questions else list(_unexplained(before))
@@ -130,6 +135,29 @@ def _slow_rows(recording: Recording) -> Iterator[str]:
             f"time: rows are {recording.period:.3g} s apart: is it in ms, or a number of rows? Say unit: ms, or rate "
             "instead of time."
         )
+
+
+def _clipped(
+    model: RobotModel, recording: Recording, q: FloatArray, lacks: dict[tuple[str, int], float]
+) -> Iterator[str]:
+    """Yield a question for each torque that the motion does not explain, and that stays at a limit while it moves."""
+    for (kind, place), lack in lacks.items():
+        if kind != "torque" or lack < _LEAST["torque"]:
+            continue
+        signal = Signal("torque", model.joint_names[place])
+        speed = np.abs(np.gradient(q[:, place], recording.t))
+        values = recording.signals[signal][speed > _AT_REST * speed.max()]
+        for limit in (values.max(), values.min()):
+            at_limit = np.abs(values - limit) <= 1e-9 * abs(limit)
+            near = (np.abs(values - limit) < _NEAR * np.ptp(values)) & ~at_limit
+            if at_limit.mean() > _CLIPPED and at_limit.sum() > _PILE * near.sum():
+                yield (
+                    f"columns.{recording.columns[signal]}: the torque of {signal.of} is {limit:.4g} "
+                    f"{'N' if model.joint_units[place] == 'm' else 'N m'} in {at_limit.mean():.0%} of the rows in "
+                    "which it moves, and the motion needs more: it is clipped. Leave out the column, or use a log "
+                    "whose torques stay below."
+                )
+                break
 
 
 def _unexplained(lacks: dict[tuple[str, int], float]) -> Iterator[str]:

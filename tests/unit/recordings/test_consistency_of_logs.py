@@ -117,6 +117,21 @@ def test_torques_of_another_meaning_are_asked_for(arm):
     assert question.endswith("Say holds: without_gravity.")
 
 
+@pytest.mark.costs(3)
+def test_clipped_torques_are_not_taken_for_another_meaning(arm):
+    def clipped(share):
+        def change(signals):
+            limits = {signal: share * np.abs(values).max() for signal, values in signals.items()}
+            return {s: np.clip(v, -limits[s], limits[s]) if s.kind == "torque" else v for s, v in signals.items()}
+
+        return change
+
+    questions = check_consistency(arm, made(arm, change=clipped(0.4))).questions
+    assert questions[0].startswith("columns.torque_of_joint1: the torque of joint1 is 2.235 N m in 22% of the rows")
+    assert all("it is clipped. Leave out the column" in question for question in questions)
+    assert check_consistency(arm, made(arm, change=clipped(0.9))).questions == ()  # the model explains it
+
+
 def test_degrees_are_asked_for(arm):
     def degrees(signals):
         return {s: v * 180.0 / np.pi if s.kind == "position" else v for s, v in signals.items()}
