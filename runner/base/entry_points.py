@@ -10,15 +10,36 @@ from collections.abc import Iterator, Sequence
 from functools import lru_cache
 from importlib.machinery import PathFinder
 from pathlib import Path
-from typing import TYPE_CHECKING
-
-if TYPE_CHECKING:
-    from importlib.metadata import EntryPoint
+from typing import NamedTuple
 
 _PREFIX = "runner."
 
 
-def entry_points_of(group: str) -> "Sequence[EntryPoint]":
+class EntryPoint(NamedTuple):
+    """A part of a package, as importlib.metadata describes it.
+
+    Attributes:
+        name: Name of the part.
+        value: Its module, and after a colon its function if it is one.
+        group: Such as "runner.controller".
+    """
+
+    name: str
+    value: str
+    group: str
+
+    @property
+    def module(self) -> str:
+        """The module."""
+        return self.value.partition("[")[0].partition(":")[0].strip()
+
+    @property
+    def attr(self) -> str:
+        """The function; empty if the part is a module."""
+        return self.value.partition("[")[0].partition(":")[2].strip()
+
+
+def entry_points_of(group: str) -> Sequence[EntryPoint]:
     """Return the entry points of a group, such as "controller"; cached by `sys.path`."""
     path, name = tuple(sys.path), f"{_PREFIX}{group}"
     if any(hasattr(finder, "find_distributions") for finder in sys.meta_path if finder is not PathFinder):
@@ -27,14 +48,14 @@ def entry_points_of(group: str) -> "Sequence[EntryPoint]":
 
 
 @lru_cache(maxsize=64)
-def _known_to_python(_path: tuple[str, ...], group: str) -> "Sequence[EntryPoint]":
+def _known_to_python(_path: tuple[str, ...], group: str) -> Sequence[EntryPoint]:
     from importlib.metadata import entry_points  # slow, which completion of words does without
 
-    return tuple(entry_points(group=group))
+    return tuple(EntryPoint(point.name, point.value, point.group) for point in entry_points(group=group))
 
 
 @lru_cache(maxsize=16)
-def _in_folders(path: tuple[str, ...]) -> "Sequence[EntryPoint]":
+def _in_folders(path: tuple[str, ...]) -> Sequence[EntryPoint]:
     files: dict[str, Path] = {}
     for folder in path:
         for name, file in _packages(Path(folder or ".")):
@@ -54,10 +75,8 @@ def _packages(folder: Path) -> Iterator[tuple[str, Path]]:
             yield stem.partition("-")[0].lower().replace("-", "_"), folder / entry / "entry_points.txt"
 
 
-def _read(file: Path) -> "Iterator[EntryPoint]":
+def _read(file: Path) -> Iterator[EntryPoint]:
     """Yield the entry points in a file that belong to the runner."""
-    from importlib.metadata import EntryPoint
-
     try:
         lines = file.read_text(encoding="utf-8").splitlines()
     except (OSError, UnicodeDecodeError):
@@ -68,4 +87,4 @@ def _read(file: Path) -> "Iterator[EntryPoint]":
             group = line.strip("[]")
         elif group.startswith(_PREFIX) and "=" in line and line[0] not in "#;":
             name, _, value = line.partition("=")
-            yield EntryPoint(name=name.strip(), value=value.strip(), group=group)
+            yield EntryPoint(name.strip(), value.strip(), group)

@@ -15,14 +15,10 @@ from collections.abc import Sequence
 from importlib.util import find_spec
 from pathlib import Path
 from types import ModuleType
-from typing import TYPE_CHECKING
 
-from runner.base.entry_points import entry_points_of
+from runner.base.entry_points import EntryPoint, entry_points_of
 from runner.base.errors import ConfigError, RunnerError, describe_part_error, nearest, unknown
 from runner.base.former_names import explain_module
-
-if TYPE_CHECKING:
-    from importlib.metadata import EntryPoint
 
 GROUPS = (
     "calibration", "controller", "endpoint_sensor", "environment", "joint_torque_sensor", "metric", "mismatch", "noise",
@@ -96,7 +92,7 @@ def named_part(line: str) -> str:
     return f"{group}={os.path.relpath(module) if _is_file(module) else module}{function}"
 
 
-def added_parts(group: str) -> "tuple[EntryPoint, ...]":
+def added_parts(group: str) -> tuple[EntryPoint, ...]:
     """Return the parts of a group from outside this package."""
     of_command_line = [entry_point(line) for line in in_use() if line.partition("=")[0] == group]
     return (*of_command_line, *entry_points_of(group))
@@ -108,7 +104,7 @@ def has_users_parts() -> bool:
     return any(not point.value.startswith("runner.") for point in points)
 
 
-def functions_in_use(group: str) -> "tuple[EntryPoint, ...]":
+def functions_in_use(group: str) -> tuple[EntryPoint, ...]:
     """Return the parts of a group that are one function."""
     return tuple(point for point in added_parts(group) if point.attr)
 
@@ -146,7 +142,7 @@ def source_files(module: str) -> list[Path]:
     return [Path(spec.origin)] if spec.origin else []
 
 
-def entry_point(line: str) -> "EntryPoint":
+def entry_point(line: str) -> EntryPoint:
     """Return a part given as GROUP=MODULE; the folder of a file is added to `sys.path`."""
     group, _, place = line.partition("=")
     module, function = _split(place)
@@ -156,9 +152,7 @@ def entry_point(line: str) -> "EntryPoint":
             sys.path.append(folder)  # last, so that its modules do not hide installed ones
         module = Path(module).stem
     name = function[1:] or module.rpartition(".")[2]
-    from importlib.metadata import EntryPoint
-
-    return EntryPoint(name=name, value=f"{module}{function}", group=f"runner.{group}")
+    return EntryPoint(name, f"{module}{function}", f"runner.{group}")
 
 
 def digests() -> dict[str, str]:
@@ -191,7 +185,7 @@ def _check_found(text: str, name: str, module: str) -> None:
         raise RunnerError(f"--plugin {text}: Python has another module {name}, {spec.origin}; rename yours")
 
 
-def _check_function(text: str, point: "EntryPoint") -> None:
+def _check_function(text: str, point: EntryPoint) -> None:
     group = point.group.removeprefix("runner.")
     if group != "controller":
         raise RunnerError(f"--plugin {text}: only a controller can be a function; give {group}=MODULE")

@@ -4,16 +4,12 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from importlib.util import find_spec
 from pathlib import Path
-from typing import TYPE_CHECKING
 
 from runner.base.atomic import write_atomically
-from runner.base.entry_points import entry_points_of
+from runner.base.entry_points import EntryPoint, entry_points_of
 from runner.base.errors import RunnerError, nearest
 from runner.base.former_names import FILES
 from runner.base.paths import STUDY_FILE, example_study_dir, studies_dir, studies_with
-
-if TYPE_CHECKING:
-    from importlib.metadata import EntryPoint
 
 GROUP = "studies"
 """The group of entry points by which an installed package says that it is a study, after `runner.`."""
@@ -72,7 +68,7 @@ def find_study(text: str, others: Sequence[str] = ()) -> Location:
     )
 
 
-def _folder_of(point: "EntryPoint") -> Path:
+def _folder_of(point: EntryPoint) -> Path:
     try:
         spec = find_spec(point.value)
     except ImportError as error:
