@@ -23,6 +23,9 @@ DEFAULT_PLANT = "PyBullet"
 FOURTH_ORDER = ("mujoco rk4", "rk4", "compiled rk4")
 FIRST_ORDER = tuple(name for name in ENGINES if name not in FOURTH_ORDER)
 
+WITHOUT_STOPS = ("rk4", "compiled rk4")
+"""Those whose joints pass their limits."""
+
 
 @pytest.fixture
 def engine(checked_config, one_stage):

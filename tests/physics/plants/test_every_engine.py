@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 from scipy.integrate import solve_ivp
-from support.engines import ENGINES, FIRST_ORDER, FOURTH_ORDER
+from support.engines import ENGINES, FIRST_ORDER, FOURTH_ORDER, WITHOUT_STOPS
 
 from runner.robots.model import RobotModel
 
@@ -159,7 +159,7 @@ def test_a_run_is_what_its_torques_do_late_and_limited(simulated, closed_loop, n
         np.testing.assert_allclose(plant.q, trace.q[row], atol=1e-12)
 
 
-@pytest.mark.parametrize("name", [name for name in ENGINES if "rk4" not in ENGINES[name].split()[0]])
+@pytest.mark.parametrize("name", [name for name in ENGINES if name not in WITHOUT_STOPS])
 def test_a_joint_stops_at_its_limit(engine, name, xarm7):
     model = xarm7.model
     plant, q = engine(name, xarm7.urdf, model, 1e-3, 10), xarm7.home.copy()
