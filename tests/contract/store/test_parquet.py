@@ -61,8 +61,8 @@ def test_a_shard_is_written_without_pandas(tmp_path):
 import sys
 from pathlib import Path
 import numpy as np
-from runner.store.shards import Outcome, ShardRow, read_outcomes, write_shard
-row = ShardRow(Outcome("0" * 24, "", False), "{{}}", "", "{{}}", (("rms", "m"),), np.array([[1.0], [np.nan]]))
+from runner.store.shards import RunOutcome, ShardRow, read_outcomes, write_shard
+row = ShardRow(RunOutcome("0" * 24, "", False), "{{}}", "", "{{}}", (("rms", "m"),), np.array([[1.0], [np.nan]]))
 assert len(read_outcomes(write_shard(Path({str(tmp_path)!r}), "0-0", [row]))) == 1
 print("pandas" in sys.modules)
 """
