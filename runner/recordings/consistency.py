@@ -142,7 +142,7 @@ def _clipped(
 ) -> Iterator[str]:
     """Yield a question for each torque that the motion does not explain, and that stays at a limit while it moves."""
     for (kind, place), lack in lacks.items():
-        if kind != "torque" or lack < _LEAST["torque"]:
+        if kind != "torque" or lack < _LEAST["torque"] or np.ptp(q[:, place]) <= _MOVES:
             continue
         signal = Signal("torque", model.joint_names[place])
         speed = np.abs(np.gradient(q[:, place], recording.t))

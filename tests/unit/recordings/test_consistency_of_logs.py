@@ -129,6 +129,11 @@ def test_clipped_torques_are_not_taken_for_another_meaning(arm):
     questions = check_consistency(arm, made(arm, change=clipped(0.4))).questions
     assert questions[0].startswith("columns.torque_of_joint1: the torque of joint1 is 2.235 N m in 22% of the rows")
     assert all("it is clipped. Leave out the column" in question for question in questions)
+    still = motion(arm)
+    still[:, 1] = 0.3
+    questions = check_consistency(arm, made(arm, q=still, change=clipped(0.4))).questions
+    assert questions
+    assert not any("of_joint2:" in question for question in questions)  # it does not move
     assert check_consistency(arm, made(arm, change=clipped(0.9))).questions == ()  # the model explains it
 
 
