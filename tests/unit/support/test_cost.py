@@ -28,8 +28,9 @@ class Terminal:
         self.lines.append(text)
 
 
-def report(name, cpu, shared=0.0):
-    return SimpleNamespace(nodeid=name, user_properties=[("cost", (0.5, cpu, shared, 1.0))])
+def report(name, cpu, shared=0.0, yardsticks=()):
+    measured = [("yardstick", yardstick) for yardstick in yardsticks]
+    return SimpleNamespace(nodeid=name, user_properties=[("cost", (0.5, cpu, shared, 1.0)), *measured])
 
 
 @pytest.fixture
@@ -51,6 +52,23 @@ def test_cpu_time_is_printed_by_folder(config):
     terminal = Terminal([report(node, 2.0, shared=1.0) for node in nodes] + [report(nodes[1], 3.0)])
     cost.pytest_terminal_summary(terminal, config)
     assert terminal.lines[-2] == "CPU time in s: config 5, unit/store 2, tests 2, session fixtures 3"
+
+
+def test_the_yardstick_is_the_mean_of_what_the_processes_measured(config):
+    given = {"a": (), "b": (1.5,), "c": (2.0,), "d": (2.5,)}
+    reports = [report(f"tests/unit/base/test_a.py::{name}", 5.0, 0.0, measured) for name, measured in given.items()]
+    terminal = Terminal(reports)
+    cost.pytest_terminal_summary(terminal, config)
+    assert terminal.lines[-3] == "unit/base: 10.0 yardsticks, more than 1.25 times its budget of 6"
+    assert terminal.lines[-2].endswith(" yardsticks of 2.00 s (1.50 to 2.50 s, 3 times)")
+
+
+def test_the_yardstick_is_timed_first_and_then_after_each_half_minute_of_cpu_time(monkeypatch):
+    used = iter([0.0, 1.0, 29.9, 30.0, 31.5])
+    monkeypatch.setattr(cost, "_CLOCK", cost._Clock())
+    monkeypatch.setattr(cost, "measure_yardstick", lambda: 2.0)
+    monkeypatch.setattr(cost, "cpu_time", lambda: next(used))
+    assert [cost._measured_when_due() for _ in range(4)] == [[2.0], [], [], [2.0]]
 
 
 def test_without_tests_nothing_is_printed(config):
