@@ -3,7 +3,10 @@
 from collections.abc import Iterator
 from math import isnan
 
+import numpy as np
+
 from runner.base.quantities import quantity
+from runner.recordings.columns_map import Signal
 from runner.recordings.compare import RecordingComparison
 
 FIT = (
@@ -23,6 +26,7 @@ WITHOUT_GRAVITY = (
     "The recorded torques are without gravity. Gravity is left out of the run's torques as well; masses cannot be "
     "compared."
 )
+_BELOW = 1e-3  # of a joint's largest recorded torque: friction nearer to zero is the arithmetic of the fit
 BEHIND_GEARS = (
     "The sensors are behind the gears. The friction of the gears and the inertia of the rotors are in neither torque."
 )
@@ -82,11 +86,11 @@ def friction_lines(found: RecordingComparison) -> Iterator[str]:
     below = [
         f"{joint.joint} {kind}"
         for joint in found.friction.joints
-        for kind, value, half in (
-            ("viscous", joint.viscous, joint.viscous_half),
-            ("Coulomb", joint.coulomb, joint.coulomb_half),
+        for kind, value, half, factor in (
+            ("viscous", joint.viscous, joint.viscous_half, np.abs(joint.speed).max()),
+            ("Coulomb", joint.coulomb, joint.coulomb_half, 1.0),
         )
-        if value + half < 0.0
+        if factor * (value + half) < -_BELOW * np.abs(found.recording.signals[Signal("torque", joint.joint)]).max()
     ]
     if below:
         yield (
