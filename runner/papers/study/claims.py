@@ -172,10 +172,11 @@ class _Claimed:
     def _hangs(self, run: Run, preset: str, verdict: Verdict) -> dict[str, str]:
         """Return the conditions that a verdict on a number depends on, each with the result under another one."""
         claim, told = self._claim, dict[str, str]()
-        alone = [self._with(preset, None if np.isnan(value) else value) for value in run.values(claim.metric).tolist()]
+        alone = self._of_each_repetition(run, preset)
         error = run.plant_error or {}
         there = error.get("metrics", {}).get(claim.metric)
-        if there is not None and (other := self._with(preset, there["value"])) != alone[0]:
+        first = None if np.isnan(value := run.values(claim.metric)[0]) else float(value)
+        if there is not None and (other := self._with(preset, there["value"])) != self._with(preset, first):
             told["the engine"] = f"repetition 0 on {PLANT[error['plant']]}: {self._shown(there['value'])}, {other}"
         others = Counter(other for other in alone if other != verdict)
         if others:
@@ -185,6 +186,18 @@ class _Claimed:
         if claim.longer and (text := self._lasting(run, preset, verdict)):
             told["the end of the run"] = text
         return told
+
+    def _of_each_repetition(self, run: Run, preset: str) -> list[Verdict]:
+        """Return the verdicts of single repetitions; what is compared with is of the same one, if it has as many."""
+        count = len(run.values(self._claim.metric))
+
+        def simulated(at: int, *key: str) -> float | None:
+            values = self._run(key[0], preset).values(key[1])
+            if len(values) != count:
+                return self._median(preset, *key)
+            return None if np.isnan(values[at]) else float(values[at])
+
+        return [self._of_number(partial(simulated, at), preset) for at in range(count)]
 
     def _lasting(self, run: Run, preset: str, verdict: Verdict) -> str:
         """Return the effect of a longer run on a claim's number; empty if it has none."""

@@ -116,6 +116,21 @@ def test_a_verdict_hangs_on_the_seed_where_repetitions_alone_are_judged_otherwis
     assert found == {"the seed": told}
 
 
+def test_a_single_repetition_is_compared_with_the_same_one_of_the_other_run():
+    other = {key: value for key, value in NUMBER.items() if key not in ("experiment", "run")}
+    like = {"printed": [], "run": "own", "like": {"run": "other", "metric": "settling_time"}}
+    claim = PublishedClaim.model_validate(other | like)
+
+    def seeds_of(*others):
+        given = {"own": seconds(1.0, 0.95, 1.0), "other": seconds(*others)}
+        runs = {f"{name}/full_equations": run_of({"settling_time": values}) for name, values in given.items()}
+        (block,) = judged_claims([claim], runs, {"full_equations": "full_equations"})
+        return dict(block.findings[0].hangs)
+
+    assert seeds_of(1.4, 1.45, 1.4) == {"the seed": "1 of 3 single repetitions: differs"}
+    assert seeds_of(1.4, 1.4, 1.45) == seeds_of(1.4) == {}  # with one value only, each is compared with it
+
+
 def test_a_verdict_hangs_on_the_end_of_the_run_where_a_longer_one_is_judged_otherwise_or_loses_its_target():
     assert hanging(lasting(4.0, 1.0, 1.4), lasting(8.0, 1.2, 1.5)) == {}
     found = hanging(lasting(4.0, 1.0, 1.4), lasting(8.0, 1.2, 3.0))
