@@ -63,8 +63,8 @@ def test_the_yardstick_is_the_mean_of_what_the_processes_measured(config):
     assert terminal.lines[-2].endswith(" yardsticks of 2.00 s (1.50 to 2.50 s, 3 times)")
 
 
-def test_the_yardstick_is_timed_first_and_then_after_each_half_minute_of_cpu_time(monkeypatch):
-    used = iter([0.0, 1.0, 29.9, 30.0, 31.5])
+def test_the_yardstick_is_timed_first_and_then_after_each_minute_of_cpu_time(monkeypatch):
+    used = iter([0.0, 1.0, 59.9, 60.0, 61.5])
     monkeypatch.setattr(cost, "_CLOCK", cost._Clock())
     monkeypatch.setattr(cost, "measure_yardstick", lambda: 2.0)
     monkeypatch.setattr(cost, "cpu_time", lambda: next(used))
