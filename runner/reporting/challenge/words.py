@@ -41,6 +41,8 @@ NOT_DONE = (
 KEPT: Sequence[Word] = ("holds", "holds, weaker", "does not appear")
 """Words of a variation that does not change the answer."""
 
+_FULL: Sequence[Word] = ("holds", "does not appear")  # and leaves at least half of its size
+
 _BAD: Sequence[Word] = ("neither works", "only one works", "cannot be asked")
 _NAMED = 8  # families that a sentence names
 
@@ -188,16 +190,18 @@ def _of_class(made: Challenge, kind: Class) -> Iterator[str]:
     families: dict[str, list[AnsweredVariation]] = {}
     for one in found:
         families.setdefault(one.variation.family, []).append(one)
-    whole = [name for name, some in families.items() if all(_word(one) in KEPT for one in some)]
+    whole = [name for name, some in families.items() if all(_word(one) in _FULL for one in some)]
     if whole:
         verb = "Does not appear with" if not made.question.sign else "Holds for"
         yield f"{verb} {', '.join(TITLES.get(name, name) for name in whole)}."
     rest = [one for one in found if one.variation.family not in whole]
-    kept = [one for one in rest if _word(one) in KEPT and _word(one) != "holds, weaker"]
+    kept = [one for one in rest if _word(one) in _FULL]
     if kept:
         yield f"Holds with {_labels(made, kept)}."
+    weaker = [f"{one.variation.label} ({_numbers(made, one)[0]})" for one in rest if _word(one) == "holds, weaker"]
+    if weaker:
+        yield f"Holds, but weaker, with {'; '.join(weaker)}."
     for word, text in (
-        ("holds, weaker", "Weaker with"),
         ("vanishes", "Ends with"),
         ("appears", "Appears with"),
         ("reversed", "Reversed with"),
@@ -217,7 +221,7 @@ def _of_class(made: Challenge, kind: Class) -> Iterator[str]:
 
 
 def _settled(made: Challenge, found: Sequence[AnsweredVariation]) -> Iterator[str]:
-    kept = [one for one in found if _word(one) in KEPT]
+    kept = [one for one in found if _word(one) in _FULL]
     if len(kept) == len(found):
         yield f"Settled numerically ({'; '.join(one.variation.label for one in found)})."
         return

@@ -3,6 +3,7 @@
 import re
 import shutil
 from collections import Counter
+from dataclasses import replace
 
 import pytest
 from support.engines import ASKED
@@ -78,6 +79,22 @@ def test_words_of_a_difference_that_gains_make(ended):
     assert found[quarter].word == "reversed"
     assert found["a motion of 0.25 s"].word == "neither works"  # neither gain follows so fast a motion
     assert found["a motion of 1 s"].word in ("holds", "holds, weaker")
+
+
+def test_a_weaker_answer_is_said_with_its_size_and_does_not_hold_as_its_family(ended):
+    def weaken(*labels):
+        found = [
+            replace(one, judged=replace(one.judged, word="holds, weaker", effect=-0.051))
+            if one.variation.label in labels
+            else one
+            for one in ended.found
+        ]
+        return scope_sentences(replace(ended, found=found))
+
+    slow, finer = "a motion of 1 s", "a step 5 times finer"
+    assert f"Holds, but weaker, with {slow} (-5.1 %)." in weaken(slow)
+    assert not any(text.startswith("Not settled") for text in weaken(slow))
+    assert f"Not settled numerically: {finer} (holds, weaker)." in weaken(finer)
 
 
 def test_combinations_are_described_and_count_in_no_class(ended):
