@@ -5,7 +5,7 @@ import gzip
 import hashlib
 import json
 import tempfile
-from collections.abc import Collection, Sequence
+from collections.abc import Callable, Collection, Sequence
 from datetime import UTC, datetime
 from functools import cache, lru_cache
 from importlib import resources
@@ -58,7 +58,11 @@ def write_report(document: Document, folder: Path, formats: Collection[str] = ("
     Raises:
         RunnerError: If a format is unknown, or the disk does not take a file.
     """
-    renderers = {"html": lambda shown: render_html(shown).encode("utf-8", errors="replace"), "pdf": render_pdf}
+    drawn = _Drawings()  # both formats show the first figure
+    renderers = {
+        "html": lambda shown: render_html(shown, drawn).encode("utf-8", errors="replace"),
+        "pdf": lambda shown: render_pdf(shown, drawn),
+    }
     unknown = sorted(set(formats) - set(renderers))
     if unknown:
         raise RunnerError(f"unknown report format {', '.join(unknown)}; allowed: {', '.join(renderers)}")
@@ -76,8 +80,25 @@ def _content(document: Document) -> dict[str, Any]:
     return {"document": document, **shown}
 
 
-def render_html(document: Document) -> str:
-    """Return a document as an HTML page."""
+class _Drawings:
+    """Figures as SVG; the one drawn last is kept."""
+
+    def __init__(self) -> None:
+        self._last: tuple[Curves | Maps, str] | None = None
+
+    def __call__(self, figure: Curves | Maps) -> str:
+        if self._last is None or self._last[0] is not figure:
+            self._last = figure, static.draw(figure)
+        return self._last[1]
+
+
+def render_html(document: Document, draw: Callable[[Curves | Maps], str] = static.draw) -> str:
+    """Return a document as an HTML page.
+
+    Args:
+        document: The report.
+        draw: Returns a figure as SVG.
+    """
     progress.begin("writing the HTML")
     made = mathml.all_mathml(document)
     has_plots, has_run_list, has_playback = (
@@ -97,7 +118,7 @@ def render_html(document: Document) -> str:
             plotly_spec=plotly_spec,
             run_list_spec=run_list_spec,
             data_uri=data_uri,
-            first_still=lambda block: static.draw(first) if first is not None and block is first else "",
+            first_still=lambda block: draw(first) if first is not None and block is first else "",
             plots=_Pack(),
             pictures=_Pack(),
             playback_spec=playback_spec,
@@ -159,8 +180,13 @@ def asset(name: str) -> CodeText:
     return CodeText((templates_dir() / name).read_text(encoding="utf-8"))
 
 
-def render_pdf(document: Document) -> bytes:
-    """Return a document as PDF; the same document gives the same bytes."""
+def render_pdf(document: Document, draw: Callable[[Curves | Maps], str] = static.draw) -> bytes:
+    """Return a document as PDF; the same document gives the same bytes.
+
+    Args:
+        document: The report.
+        draw: Returns a figure as SVG.
+    """
     progress.begin("drawing figures", outline.count_figures(document), "figures")
     made = mathml.all_mathml(document)
     with tempfile.TemporaryDirectory() as name:
@@ -173,7 +199,7 @@ def render_pdf(document: Document) -> bytes:
 
         def figure_file(block: Curves | Maps) -> str:
             progress.step()
-            return image_file(static.draw(block))
+            return image_file(draw(block))
 
         source = (
             typst_environment()

@@ -1,11 +1,15 @@
 """Report files: written whole or not at all, in the formats asked for."""
 
 import errno
+from types import SimpleNamespace
 
 import pytest
-from support.sample_document import document
+from support.sample_document import curves, document
 
 from runner.base.errors import RunnerError, StoreError
+from runner.reporting import render
+from runner.reporting.charts import static
+from runner.reporting.document import Document, Section
 from runner.reporting.render import write_report
 
 
@@ -36,3 +40,16 @@ def test_a_failed_write_leaves_the_old_report(tmp_path, monkeypatch):
     with pytest.raises(StoreError, match=r"cannot write .*report.pdf: disk full; free space on its disk"):
         write_report(document(), tmp_path, ["pdf"])
     assert [(path.name, path.read_bytes()) for path in tmp_path.iterdir()] == [("report.pdf", b"old")]
+
+
+def test_the_first_figure_is_drawn_once_for_both_files(tmp_path, monkeypatch):
+    drawn = []
+
+    def draw(figure):
+        drawn.append(figure)
+        return static.draw(figure)
+
+    monkeypatch.setattr(render, "static", SimpleNamespace(draw=draw))
+    two = [curves("first"), curves("second")]
+    write_report(Document("", "", "", [Section("", two)], ""), tmp_path)
+    assert [figure.caption for figure in drawn] == ["first", "second"]
