@@ -8,7 +8,8 @@ import yaml
 from runner.base.atomic import write_atomically
 from runner.base.errors import RunnerError, StoreError
 from runner.base.sanitize import one_line
-from runner.doctor.log import LogExamination, Meaning
+from runner.doctor.log import LogExamination
+from runner.doctor.log_meanings import Meaning
 
 MAP, MOTION = "columns.yaml", "motion.csv"
 

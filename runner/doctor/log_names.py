@@ -219,3 +219,9 @@ def _by_stem(column: str, unit: str) -> Named | None:
             if signal in _STEMS and signal not in ("j", "i", "joint", "axis"):
                 return Named(column, _STEMS[signal], signal, "_".join(joint), unit, reason)
     return None
+
+
+def plain_name(name: str) -> str:
+    """Return a joint's name without separators, and without "joint" at its end."""
+    plain = re.sub(r"[^a-z0-9]", "", name.lower())
+    return plain.removesuffix("joint") or plain

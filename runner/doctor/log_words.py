@@ -7,7 +7,8 @@ import numpy as np
 from runner.base.arrays import FloatArray
 from runner.base.quantities import quantity
 from runner.base.sanitize import few, one_line
-from runner.doctor.log import ONLY_COMMANDS, LogExamination, Meaning
+from runner.doctor.log import LogExamination
+from runner.doctor.log_meanings import ONLY_COMMANDS, Meaning
 from runner.schema.units import WRITTEN
 
 _MOST_ROWS = 20_000  # that tell a resolution
