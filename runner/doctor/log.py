@@ -10,7 +10,7 @@ from runner.base.errors import RunnerError
 from runner.base.sanitize import few
 from runner.base.tables import NumericTable
 from runner.doctor.finding import DoctorFinding
-from runner.doctor.log_meanings import BEYOND, Meaning, meanings_of, time_of
+from runner.doctor.log_meanings import BEYOND, UNNAMED, Meaning, meanings_of, time_of, unnamed
 from runner.doctor.log_motion import LogMotion, make_motion
 from runner.doctor.log_names import named, writer_of
 from runner.recordings.columns_map import ColumnsMap, factors_of, read_map
@@ -74,7 +74,7 @@ def examine_log(
     if given is not None:
         return _examine_given(path, model, given)
     table = read_log(path, None, topic, episode)
-    names = list(named(list(table.columns), table.units))
+    names = list(named(list(table.columns), table.units, () if model is None else model.joint_names))
     time, period = time_of(table, names)
     findings = [DoctorFinding("note", "rows", note) for note in table.notes]
     if time is not None and time.asked:
@@ -85,8 +85,14 @@ def examine_log(
     meanings = list(meanings_of(table, names, model, period, path))
     positions = [one for one in meanings if "joint" in one.keys]
     if not positions:
-        raise RunnerError(f"{path}: no columns of joint positions are known; its columns: {few(list(table.columns))}")
-    findings += [DoctorFinding("ask", one.column, one.asked) for one in meanings if one.asked]
+        known = {one.column for one in names}
+        meanings = [*meanings, *unnamed(table, [column for column in table.columns if column not in known])]
+        if not any("joint" in one.keys for one in meanings):
+            raise RunnerError(f"{path}: no columns of joint positions; its columns: {few(list(table.columns))}")
+        text = f"no column's name tells a position of {few(model.joint_names)}"
+        findings.append(DoctorFinding("ask", "columns", text, "fill in the map, and delete lines of other columns"))
+        positions = meanings
+    findings += [DoctorFinding("ask", one.column, one.asked) for one in meanings if one.asked and one.reason != UNNAMED]
     found = LogExamination(table, writer_of(list(table.columns)), time, meanings, findings, None, None)
     if (time is None or time.asked) or any(one.asked for one in positions):
         if time is None:

@@ -21,6 +21,8 @@ _EPOCHS = (("ns", 1e17), ("us", 1e14), ("ms", 1e11), ("s", 1e8))  # the least th
 _ALIKE = 0.1  # relative error of a ratio of speeds that tells a unit
 BEYOND = 0.05
 """Share of a joint's range by which its positions may leave it."""
+UNNAMED = "its name tells nothing"
+"""Reason of a column that may be a position."""
 ONLY_COMMANDS = "commanded, the log has no measured positions"
 """Reason of positions that are the commanded ones."""
 
@@ -130,6 +132,16 @@ def meanings_of(
     for one in names:
         if one.kind == "tip":
             yield Meaning(one.column, {"tip": one.label, "unit": one.unit or _length(table, one, model)}, one.reason)
+
+
+def unnamed(table: NumericTable, columns: Sequence[str]) -> Iterator[Meaning]:
+    """Yield the columns that may be a joint's position, to be filled in: those that move, and do not only grow."""
+    for column in columns:
+        values = table.columns[column]
+        steps = np.diff(values[~np.isnan(values)])
+        if np.any(steps < 0.0):
+            text = f"{np.nanmin(values):.4g} to {np.nanmax(values):.4g}: the position of which joint, in rad or deg?"
+            yield Meaning(column, {"joint": None, "unit": None}, UNNAMED, text)
 
 
 def _length(table: NumericTable, one: Named, model: RobotModel) -> str:

@@ -143,8 +143,13 @@ _WORDS: Sequence[tuple[Kind, str]] = (
     ),
 )
 _STEMS: Mapping[str, Kind] = {stem: kind for kind, stems in _WORDS for stem in stems.split()}
+_AXES = ("a", "ax", "axe", "achse", "asse", "eje", "gelenk")  # with a number: positions, if nothing else is one
 _TIMES = (
     "time",
+    "zeit",
+    "temps",
+    "tempo",
+    "tiempo",
     "t",
     "timestamp",
     "stamp",
@@ -168,20 +173,25 @@ def _is_of(writer: _Writer, columns: Sequence[str]) -> bool:
     return any(re.fullmatch(writer.known, column) for column in columns)
 
 
-def named(columns: Sequence[str], units: Mapping[str, str]) -> Iterator[Named]:
+def named(columns: Sequence[str], units: Mapping[str, str], joints: Sequence[str] = ()) -> Iterator[Named]:
     """Yield the columns whose names have a meaning.
 
     Args:
         columns: Names of the columns.
         units: Unit of a column by the log's own line of units.
+        joints: Names of the joints of the arm; a column of such a name holds its positions.
     """
     for writer in WRITERS:
         if _is_of(writer, columns):
             yield from (found for column in columns if (found := _by_writer(writer, column)))
             return
-    for column in columns:
-        if found := _by_stem(column, units.get(column, "")):
-            yield found
+    known = [each for name in columns if (each := _by_words(name, units.get(name, ""), joints))]
+    yield from known
+    if not any(each.kind in ("position", "reference") for each in known):
+        for column in columns:
+            words, unit = _words(column, units.get(column, ""))
+            if match := re.fullmatch(rf"({'|'.join(_AXES)})_?(\d+)", "_".join(words)):
+                yield Named(column, "position", match[1], match[2], unit, f"the name {column!r}, of an axis")
 
 
 def _by_writer(writer: _Writer, column: str) -> Named | None:
@@ -194,18 +204,26 @@ def _by_writer(writer: _Writer, column: str) -> Named | None:
     return None
 
 
-def _by_stem(column: str, unit: str) -> Named | None:
-    """Return the meaning of a name that many programs might write."""
+def _words(column: str, unit: str) -> tuple[list[str], str]:
+    """Return the words of a name in lower case, without its unit, and the unit."""
     text = column.strip().lower()
     if match := re.search(r"[\[(]\s*([a-z%*. ]+)\s*[\])]\s*$", text):
         unit, text = match[1], text[: match.start()].strip()
     words = [word for word in re.split(r"[\s_.\[\]()/:-]+", text) if word]
     if len(words) > 1 and words[-1] in _UNITS and not unit:
         unit = words.pop()
-    unit = _UNITS.get(unit.lower().strip(), unit)
+    return words, _UNITS.get(unit.lower().strip(), unit)
+
+
+def _by_words(column: str, unit: str, joints: Sequence[str]) -> Named | None:
+    """Return the meaning of a name that many programs might write."""
+    words, unit = _words(column, unit)
     plain = "_".join(words)
     reason = f"the name {column!r}"
-    if plain in _TIMES or text in _TIMES:
+    of_joint = [joint for joint in joints if re.sub(r"\W", "_", joint.lower()) == plain]
+    if len(of_joint) == 1:
+        return Named(column, "position", "the joint's name", of_joint[0], unit, f"the name of the joint {of_joint[0]}")
+    if plain in _TIMES or plain.removeprefix("_") in _TIMES or column.strip().lower() in _TIMES:
         return Named(column, "time", "time", "", unit, reason)
     if match := _TIPS.fullmatch(plain):
         return Named(column, "tip", "tip", match["label"], unit, reason)
