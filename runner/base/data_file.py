@@ -49,7 +49,7 @@ def line_of(path: Path, text: str) -> int:
 
 def _explain(model: Any, problem: dict[str, Any]) -> str:
     """Return the message of a problem; one of an unknown key names the keys that are allowed in its place."""
-    if problem["input"] is None:
+    if problem["loc"] and problem["input"] is None:
         return "needs a value; found null"
     if problem["type"] != "extra_forbidden":
         return str(problem["msg"]).removeprefix("Value error, ")

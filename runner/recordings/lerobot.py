@@ -11,8 +11,9 @@ import numpy as np
 from runner.base.bounded_json import decode_json
 from runner.base.errors import RunnerError, TableError
 from runner.base.limits import LOG_FILES, RECORDING, ExcessError, read_text
+from runner.base.parquet import number_columns, open_columns
 from runner.base.sanitize import quoted
-from runner.base.tables import NumericTable, number_columns, open_columns
+from runner.base.tables import NumericTable
 
 INFO = Path("meta", "info.json")
 """File by which a LeRobot data set is recognised."""

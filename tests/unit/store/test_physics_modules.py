@@ -12,7 +12,7 @@ OTHERS = {
     "base/bounded_json.py", "base/bounded_yaml.py", "base/cache.py", "base/data_file.py", "base/dotted_keys.py",
     "base/engine_output.py", "base/engines.py", "base/entry_points.py",
     "base/errors.py", "base/former_names.py", "base/lazy_modules.py",
-    "base/limits.py", "base/machine.py", "base/memory.py", "base/paths.py",
+    "base/limits.py", "base/machine.py", "base/memory.py", "base/parquet.py", "base/paths.py",
     "base/progress.py", "base/quantities.py", "base/sanitize.py", "base/tables.py", "base/ticks.py",
     "caveats/contact_stability.py", "caveats/monitor.py",
     "caveats/plant_error.py", "caveats/rounding.py", "caveats/rule.py", "caveats/servo_contact_stability.py",
