@@ -1,14 +1,17 @@
 """Tables: columns of numbers in text and Parquet files, recognised by content.
 
 In text, commas, semicolons, tabs or blanks separate the cells. Lines of comments may stand above the names of the
-columns, and a line of units below them. If commas do not separate cells, they may be decimal points.
+columns, and a line of units below them. If commas do not separate cells, they may be decimal points. Dates with times,
+as in ISO 8601, count in s since 1970.
 """
 
 import csv
 import math
+import re
 from array import array
-from collections.abc import Callable, Iterable, Iterator, Sequence
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field, replace
+from datetime import UTC, datetime
 from itertools import chain
 from operator import itemgetter
 from pathlib import Path
@@ -34,6 +37,7 @@ MISSING = ("", "nan", "na", "null", "none", "-nan", "nan(ind)", "-nan(ind)")
 """Cells without a number, in lower case."""
 
 _COMMENTS = ("#", "%", "//")
+_MOMENT = re.compile(r"\d{4}-\d\d-\d\d[T ]\d\d:")  # of ISO 8601
 _HEAD = 200  # lines, all but the last two may be comments
 _SAMPLE = 50  # rows from which columns of numbers are found
 _MOST_TOLD = 5  # problems of one file
@@ -55,7 +59,7 @@ class NumericTable:
         columns: Each column by its name, shape (N,); NaN for a cell without a number.
         units: Unit of a column by the file's line of units.
         lines: Number of each row's line in the file, shape (N,); None for a file without lines.
-        others: Columns that hold no numbers.
+        others: Columns that hold no numbers, each with the text that its first rows have in common.
         notes: Messages for a user: rows that are left out, and parts of the file that cannot be read.
     """
 
@@ -64,7 +68,7 @@ class NumericTable:
     columns: dict[str, FloatArray]
     units: dict[str, str] = field(default_factory=dict)
     lines: NDArray[np.int64] | None = None
-    others: tuple[str, ...] = ()
+    others: Mapping[str, str] = field(default_factory=dict)
     notes: tuple[str, ...] = ()
 
     def __len__(self) -> int:
@@ -153,7 +157,7 @@ def read_table(path: Path, wanted: Wanted | None = None, limit: Limit = RECORDIN
     if head.startswith(PARQUET):
         read = open_columns(path, limit=limit)
         columns, others = number_columns(read, {})
-        table = NumericTable(path, "Parquet", columns, others=others)
+        table = NumericTable(path, "Parquet", columns, others=dict.fromkeys(others, ""))
         chosen = wanted(read.column_names) if callable(wanted) else wanted
         if chosen is not None:
             table.require(chosen)
@@ -188,7 +192,7 @@ def read_text_table(path: Path, file: TextIO, wanted: Wanted | None = None, form
     rows = _Rows(file, layout)
     sample = list(_first(rows, _SAMPLE))
     numeric = [place for place, name in enumerate(names) if name not in twice and _has_numbers(sample, place)]
-    others = tuple(name for place, name in enumerate(names) if place not in numeric)
+    others = {name: _text(sample, place) for place, name in enumerate(names) if place not in numeric}
     if wanted is not None:
         NumericTable(path, form, dict.fromkeys(names, np.empty(0))).require(wanted)
         numeric = [names.index(name) for name in wanted]
@@ -280,17 +284,29 @@ def _has_numbers(sample: Sequence[tuple[int, list[str]]], place: int) -> bool:
     return bool(cells) and all(map(_is_cell, cells))
 
 
+def _text(sample: Sequence[tuple[int, list[str]]], place: int) -> str:
+    """Return the text that all rows have in a column; empty if they differ."""
+    texts = {row[place].strip() for _, row in sample if place < len(row)}
+    return texts.pop() if len(texts) == 1 else ""
+
+
 def _is_cell(text: str) -> bool:
     """Return whether a cell holds a number, or says that it is missing."""
     return text.lower() in MISSING or _number(text, "") is not None
 
 
 def _number(text: str, separator: str) -> float | None:
-    """Return the number in a cell; None if there is none."""
+    """Return the number in a cell, of a date with a time in s since 1970; None if there is none."""
+    text = text if separator == "," else text.replace(",", ".")
     try:
-        return float(text if separator == "," else text.replace(",", "."))
+        return float(text)
+    except ValueError:
+        pass
+    try:
+        moment = datetime.fromisoformat(text) if _MOMENT.match(text) else None
     except ValueError:
         return None
+    return None if moment is None else (moment if moment.tzinfo else moment.replace(tzinfo=UTC)).timestamp()
 
 
 class _Numbers:

@@ -74,7 +74,7 @@ def examine_log(
     if given is not None:
         return _examine_given(path, model, given)
     table = read_log(path, None, topic, episode)
-    names = list(named(list(table.columns), table.units, () if model is None else model.joint_names))
+    names = list(named(table, () if model is None else model.joint_names))
     time, period = time_of(table, names)
     findings = [DoctorFinding("note", "rows", note) for note in table.notes]
     if time is not None and time.asked:

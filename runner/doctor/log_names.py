@@ -5,6 +5,7 @@ from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from typing import Literal
 
+from runner.base.tables import NumericTable
 from runner.recordings.messages import STAMP
 
 Kind = Literal["time", "position", "reference", "velocity", "torque", "current", "tip"]
@@ -41,11 +42,13 @@ class _Writer:
     """A program that writes logs: its name, a column by which it is known, and its columns.
 
     Each is a pattern of names with the groups `label`, kind, unit and what a torque holds and where it is measured.
+    `joints` are the names of columns with the name of the joint of each label.
     """
 
     name: str
     known: str
     columns: Sequence[_Column]
+    joints: Sequence[str] = ()
 
 
 _J = r"_(?P<label>\d+)"
@@ -97,6 +100,18 @@ WRITERS: Sequence[_Writer] = (
             (r"(?P<label>(?!.*\.(reference|feedback)\.).+)\.velocity", "velocity", "rad/s", "", ""),
             (r"(?P<label>(?!.*\.(reference|feedback)\.).+)\.effort", "torque", "N m", "", ""),
         ),
+    ),
+    _Writer(
+        "rostopic echo -p",
+        r"field\.((actual|feedback)\.)?positions?0",
+        (
+            (r"field\.header\.stamp", "time", "ns", "", ""),
+            (r"field\.(desired|reference)\.positions(?P<label>\d+)", "reference", "rad", "", ""),
+            (r"field\.((actual|feedback)\.)?positions?(?P<label>\d+)", "position", "rad", "", ""),
+            (r"field\.((actual|feedback)\.velocities|velocity)(?P<label>\d+)", "velocity", "rad/s", "", ""),
+            (r"field\.((actual|feedback)\.)?effort(?P<label>\d+)", "torque", "N m", "", ""),
+        ),
+        ("field.name{}", "field.joint_names{}"),
     ),
     _Writer(
         "PlotJuggler",
@@ -173,17 +188,17 @@ def _is_of(writer: _Writer, columns: Sequence[str]) -> bool:
     return any(re.fullmatch(writer.known, column) for column in columns)
 
 
-def named(columns: Sequence[str], units: Mapping[str, str], joints: Sequence[str] = ()) -> Iterator[Named]:
+def named(table: NumericTable, joints: Sequence[str] = ()) -> Iterator[Named]:
     """Yield the columns whose names have a meaning.
 
     Args:
-        columns: Names of the columns.
-        units: Unit of a column by the log's own line of units.
+        table: The log.
         joints: Names of the joints of the arm; a column of such a name holds its positions.
     """
+    columns, units = list(table.columns), table.units
     for writer in WRITERS:
         if _is_of(writer, columns):
-            yield from (found for column in columns if (found := _by_writer(writer, column)))
+            yield from (found for column in columns if (found := _by_writer(writer, column, table.others)))
             return
     known = [each for name in columns if (each := _by_words(name, units.get(name, ""), joints))]
     yield from known
@@ -194,12 +209,13 @@ def named(columns: Sequence[str], units: Mapping[str, str], joints: Sequence[str
                 yield Named(column, "position", match[1], match[2], unit, f"the name {column!r}, of an axis")
 
 
-def _by_writer(writer: _Writer, column: str) -> Named | None:
+def _by_writer(writer: _Writer, column: str, texts: Mapping[str, str]) -> Named | None:
     for pattern, kind, unit, holds, side in writer.columns:
         if match := re.fullmatch(pattern, column):
             label = match.groupdict().get("label") or ""
             if kind == "tip":
                 label = "xyz"[int(label)]
+            label = next((texts[name] for each in writer.joints if (name := each.format(label)) in texts), label)
             return Named(column, kind, pattern, label, unit, f"names of {writer.name}", holds, side)
     return None
 

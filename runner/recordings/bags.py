@@ -104,7 +104,7 @@ def read_bag(path: Path, topic: str | None) -> NumericTable:
     kind = contents.topics[chosen].replace("/msg/", "/")
     others = [f"{name} ({kind})" for name, kind in contents.topics.items() if name != chosen]
     form = f"{form_of(files[0])}{f', {len(files)} files' if len(files) > 1 else ''}, {chosen} ({kind})"
-    return NumericTable(path, form, columns, others=tuple(others), notes=tuple(contents.notes))
+    return NumericTable(path, form, columns, others=dict.fromkeys(others, ""), notes=tuple(contents.notes))
 
 
 def _collect(file: Path, topic: str | None, contents: _Contents, found: dict[str, JointStates]) -> None:

@@ -62,7 +62,7 @@ def test_a_line_of_units(tmp_path, units):
 def test_columns_of_text_are_named_and_not_read(tmp_path):
     found = read(tmp_path, "\n".join(["t,mode,q", *(line.replace(",", ",run,") for line in lines(","))]))
     assert list(found.columns) == ["t", "q"]
-    assert found.others == ("mode",)
+    assert found.others == {"mode": "run"}
 
 
 def test_rows_of_other_series_are_left_out(tmp_path):
