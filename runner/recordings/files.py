@@ -1,4 +1,4 @@
-"""Tables of logs: text, Parquet, LeRobot folders, mecademicpy's zip files and ROS bags, recognised by content."""
+"""Tables of logs: text, Parquet, NumPy's arrays, LeRobot folders, mecademicpy's zip files, ROS bags; by content."""
 
 import io
 import zipfile
@@ -8,6 +8,7 @@ from pathlib import Path
 from runner.base.errors import RunnerError
 from runner.base.limits import LOG_FILES, RECORDING, ExcessError
 from runner.base.tables import NumericTable, read_table, read_text_table
+from runner.recordings.arrays import read_arrays
 from runner.recordings.bags import bag_files, read_bag
 from runner.recordings.lerobot import EPISODE, INFO, one_episode, read_lerobot
 
@@ -81,11 +82,13 @@ def _read_folder(path: Path, topic: str | None, episode: int | None) -> NumericT
 
 
 def _read_zip(path: Path, wanted: Sequence[str] | None) -> NumericTable:
-    """Return the largest CSV file in a zip file, which mecademicpy writes together with a description."""
+    """Return NumPy's arrays, or the largest CSV file, which mecademicpy writes together with a description."""
     with zipfile.ZipFile(path) as archive:
+        if any(item.filename.endswith(".npy") for item in archive.infolist()):
+            return read_arrays(path, archive)
         texts = [item for item in archive.infolist() if item.filename.lower().endswith(".csv")]
         if not texts:
-            raise RunnerError(f"{path}: has no CSV file in it. Allowed: a zip of mecademicpy.")
+            raise RunnerError(f"{path}: has no CSV file in it. Allowed: a zip of mecademicpy, and .npz of NumPy.")
         largest = max(texts, key=lambda item: item.file_size)
         if excess := RECORDING.excess(largest.file_size):
             raise ExcessError(f"it {excess}, unpacked")

@@ -184,7 +184,7 @@ def test_a_log_without_commands_follows_its_measured_positions_and_says_so(cli, 
         (("lab.csv", "--controller", "joint_pd"), "--controller: no run is made without --robot."),
         (("lab.csv", "lab.csv", "--robot", "macro"), "--robot: not one log."),
         (("lab.csv", "--robot", "makro"), "did you mean macro?"),
-        (("lab.csv", "--robot", "macro"), "no columns of joint positions are known"),
+        (("lab.csv", "--robot", "macro"), "columns: no column's name tells a position of q1, q2, q3"),
         (("lab.csv", "--robot", "macro", "--by", "controller"), "not for recordings."),
     ],
 )

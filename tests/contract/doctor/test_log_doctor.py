@@ -55,6 +55,34 @@ def plotjuggler(tmp_path, signals, joints, time):
     return csv(tmp_path, pd.concat([table, other]).sort_values(time))
 
 
+def by_joint_names(tmp_path, signals, joints):
+    """A table with dates as times, and columns of the names of the joints, by their alphabet."""
+    dates = pd.to_datetime(1_700_000_000_123_000_000 + (1e9 * signals["t"]).round().astype(int)).strftime("%FT%T.%f")
+    columns = {name: signals["q"][:, joints.index(name)] for name in sorted(joints)}
+    return csv(tmp_path, pd.DataFrame({"timestamp": dates, **columns}))
+
+
+def rostopic(tmp_path, signals, joints):
+    """A table as rostopic writes it; the driver of UR sorts the joints by their names."""
+    stamps = 1_700_000_000_123_456_789 + (1e9 * signals["t"]).round().astype(int)
+    order = sorted(range(len(joints)), key=lambda place: joints[place])
+    columns = {"%time": stamps + 1_000_000, "field.header.stamp": stamps}
+    columns |= {f"field.name{place}": joints[joint] for place, joint in enumerate(order)}
+    for name, kind in (("position", "q"), ("velocity", "dq"), ("effort", "tau")):
+        columns |= {f"field.{name}{place}": signals[kind][:, joint] for place, joint in enumerate(order)}
+    return csv(tmp_path, pd.DataFrame(columns))
+
+
+def axes(tmp_path, signals):
+    frame = pd.DataFrame(np.degrees(signals["q"]), columns=[f"A{place + 1}" for place in range(6)])
+    return csv(tmp_path, frame.assign(Zeit=signals["t"]), ";", decimal=",")
+
+
+def npz(tmp_path, signals):
+    np.savez(tmp_path / "log.npz", t=signals["t"], q=signals["q"], dq=signals["dq"].T, tau=signals["tau"])
+    return tmp_path / "log.npz"
+
+
 FORMATS = {
     "commas": lambda p, s, m: csv(p, made.frame(s, made.PLAIN, 1)),
     "semicolons": lambda p, s, m: csv(p, made.frame(s, made.PLAIN, 1), ";", "log.tsv", decimal=","),
@@ -67,6 +95,10 @@ FORMATS = {
     "plotjuggler 3.17": lambda p, s, m: plotjuggler(p, s, m.joint_names, "time"),
     "parquet": lambda p, s, m: made.frame(s, made.RTDE).to_parquet(p / "log.parquet") or p / "log.parquet",
     "mecademicpy": lambda p, s, m: made.write_meca_zip(p / "log.zip", s),
+    "joint names and dates": lambda p, s, m: by_joint_names(p, s, m.joint_names),
+    "rostopic": lambda p, s, m: rostopic(p, s, m.joint_names),
+    "axes": lambda p, s, m: axes(p, s),
+    "npz": lambda p, s, m: npz(p, s),
     "libfranka": lambda p, s, m: csv(p, made.frame(s, made.FRANKA)),
 }
 BAGS = {
@@ -122,6 +154,25 @@ def test_states_of_a_controller_have_its_commands(tmp_path, arm, signals):
     assert found.motion.commanded
     assert "elbow_joint.reference.position" in found.table.columns
     assert found.table.columns["elbow_joint.feedback.position"] == pytest.approx(signals["q"][:, 2])
+
+
+def test_names_that_tell_nothing_are_asked_for_and_the_answers_taken(cli, tmp_path, arm, signals):
+    names = ["red", "green", "blue", "black", "white", "grey"]
+    table = pd.DataFrame(signals["q"], columns=names).assign(t=signals["t"], count=np.arange(len(signals["t"])))
+    path = csv(tmp_path, table)
+    found = examine_log(path, arm)
+    assert [question.place for question in found.questions] == ["columns"]
+    assert [one.column for one in found.meanings] == names  # without the counter
+    assert found.motion is None
+    assert cli("doctor", path, "--robot", "ur5e", "-o", tmp_path / "mine").code == 1
+    text = (tmp_path / "mine" / "columns.yaml").read_text()
+    unanswered = cli("doctor", path, "--robot", "ur5e", "--columns", tmp_path / "mine" / "columns.yaml")
+    assert "columns.red.unit: needs a value; found null (line 4)" in unanswered.err
+    for joint in arm.joint_names:
+        text = text.replace("{joint: null, unit: null}", f"{{joint: {joint}, unit: rad}}", 1)
+    (tmp_path / "answered.yaml").write_text(text)
+    answered = examine_log(path, arm, given=tmp_path / "answered.yaml")
+    assert answered.recording.positions(arm.joint_names) == pytest.approx(signals["q"], abs=2e-6)
 
 
 def test_a_log_of_commands_is_called_one(cli, tmp_path, signals):

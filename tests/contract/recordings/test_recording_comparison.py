@@ -151,7 +151,7 @@ def test_friction_below_zero_is_named(stored, compared):
     joints = [
         FrictionEstimate("q1", "rad", -6.4, 1.6, 0.1, 0.2, 0.0, np.ones(1), np.zeros(1)),
         FrictionEstimate("q2", "rad", 3.3, 1.9, -0.1, 0.2, 0.0, np.ones(1), np.zeros(1)),
-        FrictionEstimate("q3", "rad", -2e-6, 1e-6, -2e-6, 1e-6, 0.0, np.ones(1), np.zeros(1)),  # not told from zero
+        FrictionEstimate("q3", "rad", -2e-6, 1e-6, -2e-6, 1e-6, 0.0, np.ones(1), np.zeros(1)),  # as good as zero
     ]
     (line,) = (line for line in friction_lines(replace(found, friction=Friction(joints, [], 10.0))) if "Below" in line)
     assert line.startswith("Below zero, with the whole interval: q1 viscous. No friction is")
