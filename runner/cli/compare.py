@@ -23,7 +23,8 @@ if TYPE_CHECKING:
     from runner.recordings.compare import RecordingComparison
     from runner.store import Run, Sweep
 
-_LOGS = (".csv", ".tsv", ".txt", ".log", ".parquet", ".zip", ".npz", ".bag", ".mcap", ".db3")  # a missing file is called a log
+# A missing file of such a name is called a log.
+_LOGS = (".csv", ".tsv", ".txt", ".log", ".parquet", ".zip", ".npz", ".bag", ".mcap", ".db3")
 
 
 def add_arguments(parser: Parser) -> None:
