@@ -39,7 +39,10 @@ def scope_line(answers: Sequence[Answer], folders: Sequence[Path], words: Sequen
 
 
 def _time_text(answer: Answer, outputs: Path) -> str:
-    """Return the expected time of a challenge in brackets, from the times of two stored runs; empty if unknown."""
+    """Return the expected time of a challenge in brackets, from the times of two stored runs; empty if unknown.
+
+    At first use the laws are compiled for each variation, which takes two to four times as long.
+    """
     from runner.sweeps.challenge.table import read_values  # Hydra, which pages do without
 
     pairs = answer.pairs
@@ -52,7 +55,7 @@ def _time_text(answer: Answer, outputs: Path) -> str:
         return ""
     variations = sum(map(len, read_values(()).values()))
     seconds = variations * (_FIXED + _DRAWS * draws / len(names))
-    return f" (about {format_duration(5.0 * max(1, round(seconds / 5.0)))})"
+    return f" (about {format_duration(5.0 * max(1, round(seconds / 5.0)))}, longer at first use)"
 
 
 def _seconds_of_draw(run: Run) -> float:
