@@ -54,7 +54,8 @@ def test_a_sweep_tells_its_counts_what_may_be_said_and_what_comes_next(cli):
     sweep = ("-m", "hydra.sweeper.workers=0", *SHORT, "controller.period=5ms,10ms")
     *_, counts, told, scope, following = cli(*sweep).err.splitlines()
     assert re.fullmatch(
-        r"runner: Not challenged: `runner challenge latest` \(about \d+ s, longer at first use\) tries other choices\.", scope
+        r"runner: Not challenged: `runner challenge latest` \(about \d+ s, longer at first use\) tries other choices\.",
+        scope,
     )
     assert counts == "runner: 2 runs: 2 made, 0 stored before, none of them failed"
     assert " % smaller with controller.period=0.005 (" in told
