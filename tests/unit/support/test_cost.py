@@ -54,12 +54,14 @@ def test_cpu_time_is_printed_by_folder(config):
     assert terminal.lines[-2] == "CPU time in s: config 5, unit/store 2, tests 2, session fixtures 3"
 
 
-def test_the_yardstick_is_the_mean_of_what_the_processes_measured(config):
+def test_the_yardstick_is_the_mean_of_what_the_processes_measured(config, monkeypatch, tmp_path):
+    monkeypatch.setattr(cost, "BUDGETS", tmp_path / "budgets.yaml")
+    cost.BUDGETS.write_text("unit/base: 6")
     given = {"a": (), "b": (1.5,), "c": (2.0,), "d": (2.5,)}
     reports = [report(f"tests/unit/base/test_a.py::{name}", 5.0, 0.0, measured) for name, measured in given.items()]
     terminal = Terminal(reports)
     cost.pytest_terminal_summary(terminal, config)
-    assert terminal.lines[-3] == "unit/base: 10.0 yardsticks, more than 1.25 times its budget of 6"
+    assert terminal.lines[-3] == "all: 10.0 yardsticks, more than 1.5 times the budgets of 6"
     assert terminal.lines[-2].endswith(" yardsticks of 2.00 s (1.50 to 2.50 s, 3 times)")
 
 
@@ -83,14 +85,29 @@ def test_a_test_is_too_dear_above_four_times_what_it_states(cpu, dear):
     assert lines == (["a: 16.2 yardsticks, more than 4 times the stated 4"] if dear else [])
 
 
-def test_a_folder_is_too_dear_above_its_budget_and_a_new_one_needs_a_budget():
-    costs = [Cost(f"tests/unit/store/test_a.py::{name}", 0.0, 2.5, 100.0, 4.0) for name in "ab"]
-    assert cost.over_budget(costs, {"unit/store": 8.0}, yardstick=0.5) == []
-    assert cost.over_budget([*costs, costs[0]], {"unit/store": 8.0}, yardstick=0.5) == [
-        "unit/store: 15.0 yardsticks, more than 1.25 times its budget of 8"
+def spent(**seconds):
+    return [Cost(f"tests/unit/{folder}/test_a.py::a", 0.0, cpu, 100.0, 4.0) for folder, cpu in seconds.items()]
+
+
+def test_a_folder_is_too_dear_above_its_share_of_all_and_a_new_one_needs_a_budget():
+    budgets = {"unit/store": 8.0, "unit/base": 8.0}
+    assert cost.over_budget(spent(store=5.0, base=3.0), budgets, yardstick=0.5) == []  # 10 of 8
+    assert cost.over_budget(spent(store=5.1, base=2.9), budgets, yardstick=0.5) == [
+        "unit/store: 10.2 yardsticks, more than 1.25 times its share of all, 8.0"
     ]
-    assert cost.over_budget(costs, {}, yardstick=0.5) == [
+    assert cost.over_budget(spent(store=2.6, base=1.4), budgets, yardstick=0.5) == [  # on a machine twice as fast
+        "unit/store: 5.2 yardsticks, more than 1.25 times its share of all, 4.0"
+    ]
+    assert cost.over_budget(spent(store=5.0), {}, yardstick=0.5) == [
         "unit/store: 10.0 yardsticks; budgets.yaml has no budget for it"
+    ]
+
+
+def test_all_folders_together_are_too_dear_above_half_as_much_again():
+    budgets = {"unit/store": 8.0, "unit/base": 8.0, "unit/cli": 5.0}
+    assert cost.over_budget(spent(store=6.0, base=6.0), budgets, yardstick=0.5) == []
+    assert cost.over_budget(spent(store=6.1, base=6.0), budgets, yardstick=0.5) == [
+        "all: 24.2 yardsticks, more than 1.5 times the budgets of 16"
     ]
 
 
