@@ -2,6 +2,7 @@
 
 import io
 import zipfile
+import zlib
 from collections.abc import Sequence
 from pathlib import Path
 
@@ -36,7 +37,7 @@ def read_log(
     """
     try:
         table = _read(path, wanted, topic, episode)
-    except (OSError, ExcessError, UnicodeError, zipfile.BadZipFile) as error:
+    except (OSError, ExcessError, UnicodeError, zipfile.BadZipFile, zlib.error) as error:
         raise RunnerError(f"cannot read {path}: {error}") from error
     if wanted is not None:
         table.require(wanted)

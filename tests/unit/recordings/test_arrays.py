@@ -56,3 +56,13 @@ def test_damaged_arrays_are_named(tmp_path, content, told):
 def test_a_file_without_signals_is_named(tmp_path):
     with pytest.raises(RunnerError, match="has no arrays of numbers"):
         saved(tmp_path, names=np.array(["a"]))
+
+
+@pytest.mark.parametrize("place", range(120, 400, 20))
+def test_damaged_compression_is_one_sentence(tmp_path, place):
+    saved(tmp_path, q=np.random.default_rng(0).integers(0, 9, len(T)))
+    content = bytearray((tmp_path / "log.npz").read_bytes())
+    content[place : place + 8] = b"\xff" * 8
+    (tmp_path / "log.npz").write_bytes(content)
+    with pytest.raises(RunnerError, match=r"log\.npz"):
+        read_log(tmp_path / "log.npz")
