@@ -32,21 +32,21 @@ def open_columns(path: Path, names: list[str] | None = None, limit: Limit = RECO
         raise TableError(path, f"is not a Parquet file: {str(error).splitlines()[0]}") from error
 
 
-def number_columns(table: Any, names: Mapping[str, Sequence[str]]) -> tuple[dict[str, FloatArray], tuple[str, ...]]:
-    """Return the columns of numbers of a table of pyarrow by name, and the names of the other ones.
+def number_columns(table: Any, names: Mapping[str, Sequence[str]]) -> tuple[dict[str, FloatArray], dict[str, str]]:
+    """Return the columns of numbers of a table of pyarrow by name, and the other ones, without a text.
 
     Args:
         table: The table; a list of numbers in each cell becomes columns NAME.0, NAME.1 and so on.
         names: Names of the numbers in such lists, by column.
     """
     found: dict[str, FloatArray] = {}
-    others: list[str] = []
+    others: dict[str, str] = {}
     for name in table.column_names:
         parts = list(_split(name, table[name], names.get(name, ())))
         found.update(parts)
         if not parts:
-            others.append(name)
-    return found, tuple(others)
+            others[name] = ""
+    return found, others
 
 
 def _split(name: str, column: Any, parts: Sequence[str]) -> Iterator[tuple[str, FloatArray]]:

@@ -157,7 +157,7 @@ def read_table(path: Path, wanted: Wanted | None = None, limit: Limit = RECORDIN
     if head.startswith(PARQUET):
         read = open_columns(path, limit=limit)
         columns, others = number_columns(read, {})
-        table = NumericTable(path, "Parquet", columns, others=dict.fromkeys(others, ""))
+        table = NumericTable(path, "Parquet", columns, others=others)
         chosen = wanted(read.column_names) if callable(wanted) else wanted
         if chosen is not None:
             table.require(chosen)

@@ -88,7 +88,7 @@ def _read_episode(
     chosen, form = _chosen(path, lengths, episode)
     table = open_columns(places[chosen])
     columns, others = number_columns(table.filter(table[EPISODE].to_numpy() == chosen), names)
-    return NumericTable(path, f"LeRobot data set, {form}", columns, others=dict.fromkeys(others, ""))
+    return NumericTable(path, f"LeRobot data set, {form}", columns, others=others)
 
 
 def _chosen(path: Path, lengths: Mapping[int, int], episode: int | None) -> tuple[int, str]:

@@ -120,6 +120,11 @@ def run_name(name: str, preset: str) -> str:
     return f"{name}/{preset}" if preset else name
 
 
+def _value(number: float) -> float | None:
+    """Return a metric of one repetition; None without a value."""
+    return None if np.isnan(number) else float(number)
+
+
 class _Claimed:
     """One claim, with everything that decides its verdict.
 
@@ -175,7 +180,7 @@ class _Claimed:
         alone = self._of_each_repetition(run, preset)
         error = run.plant_error or {}
         there = error.get("metrics", {}).get(claim.metric)
-        first = None if np.isnan(value := run.values(claim.metric)[0]) else float(value)
+        first = _value(run.values(claim.metric)[0])
         if there is not None and (other := self._with(preset, there["value"])) != self._with(preset, first):
             told["the engine"] = f"repetition 0 on {PLANT[error['plant']]}: {self._shown(there['value'])}, {other}"
         others = Counter(other for other in alone if other != verdict)
@@ -193,9 +198,7 @@ class _Claimed:
 
         def simulated(at: int, *key: str) -> float | None:
             values = self._run(key[0], preset).values(key[1])
-            if len(values) != count:
-                return self._median(preset, *key)
-            return None if np.isnan(values[at]) else float(values[at])
+            return _value(values[at]) if len(values) == count else self._median(preset, *key)
 
         return [self._of_number(partial(simulated, at), preset) for at in range(count)]
 
