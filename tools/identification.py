@@ -2,6 +2,7 @@
 
 In a third of the worlds a wrong kind of friction is forced, and three logs are given. The torques of each world are
 those of the equations of motion with other masses than the file's, so the truth is known. WORLDS sets their number.
+After them 100 worlds have currents with wrong torque constants, and two logs, the second one with a known payload.
 """
 
 import os
@@ -19,13 +20,15 @@ from runner.config.compose.compose import compose
 from runner.identification.checks import find_flags, second_method
 from runner.identification.fit import Fit, fit_logs
 from runner.identification.friction_kinds import TERMS, FrictionKind
-from runner.identification.log_rows import LogRows, log_rows
+from runner.identification.log_rows import LogRows, log_rows, payload_torques
 from runner.identification.parameters import ParameterSum, base_sums
+from runner.recordings.columns_map import FixedPayload
 from runner.recordings.equations import EvenRows, motion_of
 from runner.recordings.smoothing import cutoff
 from runner.robots.model import RobotModel
 
 _WORLDS, _SEED = 500, 820_000
+_CURRENTS, _CURRENTS_SEED = 100, 830_000
 _ARMS = ("planar", "macro", "so101", "ur5e")
 _RIGHT: Sequence[tuple[FrictionKind, FrictionKind]] = (("coulomb", "coulomb"), ("load", "load"))
 _WRONG: Sequence[tuple[FrictionKind, FrictionKind]] = (
@@ -70,9 +73,43 @@ def main() -> bool:
         own = [world for world in found if world.label == label]
         shares = [float(np.mean([getattr(world, name) for world in own])) for name in ("covered", "flagged")]
         print(f"    {label:40} {len(own):4}  {shares[0]:6.1%} {shares[1]:6.1%}")
+    met &= _report_currents()
     used = resource.getrusage(resource.RUSAGE_CHILDREN)
     print(f"  CPU time: {(used.ru_utime + used.ru_stime) / 60.0:.1f} min")
     return met
+
+
+def _report_currents() -> bool:
+    print(f"{_CURRENTS} worlds with currents, seeds {_CURRENTS_SEED} to {_CURRENTS_SEED + _CURRENTS - 1}")
+    with ProcessPoolExecutor(os.cpu_count()) as pool:
+        found = np.array(list(pool.map(examine_currents, range(_CURRENTS_SEED, _CURRENTS_SEED + _CURRENTS))))
+    constants, sums, _ = found.mean(axis=0)
+    good = bool(min(constants, sums) >= 0.93)
+    print(f"  torque constants covered {constants:6.1%}, other sums {sums:6.1%}{': met' if good else ': MISSED'}")
+    print(f"  median error of a torque constant: {np.median(found[:, 2]):.2%}")
+    return good
+
+
+def examine_currents(seed: int) -> tuple[float, float, float]:
+    """Return the shares of torque constants and of other sums that are covered, and the constants' median error."""
+    random = np.random.default_rng(seed)
+    arm = str(random.choice(_ARMS))
+    model, sums = _model(arm), _sums(arm)
+    full = np.concatenate([model.inertial_parameters, random.uniform(0.05, 0.5, model.nq)])
+    full = full * random.uniform(0.7, 1.3, len(full))
+    base = np.array([each.factors for each in sums]) @ full
+    drawn = _Friction(random, model, "coulomb", base, sums)
+    gains = np.exp(random.uniform(-0.4, 0.4, model.nq))
+    payload = FixedPayload(mass=float(random.uniform(0.05, 0.3) * model.inertial_parameters[::10].sum()))
+    logs = [_log(random, arm, drawn, 0.0, 0.01, number, each, gains) for number, each in enumerate((None, payload))]
+    fit = fit_logs(logs, "coulomb", currents=range(model.nq))
+    layout, halves = fit.state.layout, second_method(fit).halves
+    wanted = np.concatenate([base, drawn.values("coulomb")])
+    known = [place for place in fit.taken if place < len(wanted) and _is_alone(fit, place)]
+    hit = np.abs(fit.state.values[known] - wanted[known]) <= halves[known]
+    places = [place for place in fit.taken if layout.constants <= place < layout.delay]
+    errors = (fit.state.scales / gains - 1.0)[[layout.currents[place - layout.constants] for place in places]]
+    return float(np.mean(np.abs(errors) <= halves[places])), float(hit.mean()), float(np.median(np.abs(errors)))
 
 
 @cache
@@ -184,13 +221,27 @@ def _rigid(
     return np.asarray(Y[:, :, [each.column for each in sums]] @ base)
 
 
-def _log(random: np.random.Generator, arm: str, drawn: _Friction, delay: float, size: float, number: int) -> LogRows:
+def _log(
+    random: np.random.Generator,
+    arm: str,
+    drawn: _Friction,
+    delay: float,
+    size: float,
+    number: int,
+    payload: FixedPayload | None = None,
+    gains: FloatArray | float = 1.0,
+) -> LogRows:
     model, t = _model(arm), np.arange(0.0, float(random.uniform(20.0, 40.0)), _PERIOD)
     state = random.bit_generator.state
     q = _waves(random, model, t)[0]
     random.bit_generator.state = state  # the same motion, seen by the torques a delay later
     late = _waves(random, model, t - delay)
     rigid = _rigid(model, drawn.base, drawn.sums, *late)
+    if payload is not None:
+        zeros = np.zeros_like(late[0])
+        signs = np.sign(late[1])
+        motion = EvenRows(model, 1.0, 1.0, *late, signs, zeros, zeros[0], model.nq * ("",))
+        rigid = rigid + payload_torques(motion, payload)
     torques = rigid + drawn.torque(late[1], rigid)
     scale = size * torques.std(axis=0)
     slow, kept = np.zeros(model.nq), float(np.exp(-_PERIOD / 0.08))
@@ -199,5 +250,5 @@ def _log(random: np.random.Generator, arm: str, drawn: _Friction, delay: float, 
         slow = kept * slow + np.sqrt(1.0 - kept**2) * random.normal(size=model.nq)
         row += slow
     q = q + 2e-5 * random.normal(size=q.shape)
-    motion = motion_of(model, q, torques + scale * noise, _PERIOD, cutoff(_PERIOD))
-    return log_rows(motion, drawn.sums, True, f"log {number + 1}")
+    motion = motion_of(model, q, (torques + scale * noise) / gains, _PERIOD, cutoff(_PERIOD))
+    return log_rows(motion, drawn.sums, True, f"log {number + 1}", payload)

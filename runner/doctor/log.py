@@ -135,7 +135,7 @@ def judge(found: LogExamination, model: RobotModel, said: ColumnsMap) -> LogExam
     if recording.filled:
         gaps = f"{len(recording.filled)} gaps of up to {max(recording.filled):.3g} s"
         findings.append(DoctorFinding("note", "rows", gaps, "--fill-gaps fills them"))
-    verdict = check_consistency(model, recording)
+    verdict = check_consistency(said.loaded(model), recording)
     gravity = [question for question in verdict.questions if question.endswith(WITHOUT_GRAVITY)]
     if gravity and len(verdict.questions) == 1:
         reason = gravity[0].removesuffix(WITHOUT_GRAVITY).strip()

@@ -10,7 +10,8 @@ from scipy.special import stdtr, stdtrit
 from runner.base.arrays import FloatArray
 from runner.identification.fit import Fit, block_numbers
 from runner.identification.friction_kinds import other_columns
-from runner.identification.log_rows import LogRows, payload_columns
+from runner.identification.log_rows import LogRows, payload_torques
+from runner.recordings.columns_map import FixedPayload
 
 _DOUBT = 0.02  # probability that a check of a right kind of friction finds anything
 _PAYLOAD_DOUBT = 1e-4  # probability for a change of payload, of which many times are tried
@@ -119,7 +120,8 @@ def find_payload_changes(fit: Fit, logs: Sequence[LogRows]) -> Iterator[MassChan
         return
     score, system = _Score(fit), fit.system
     for number, rows in enumerate(logs):
-        payload, best = payload_columns(rows), (0.0, 0.0, 0.0)
+        payload = rows.motion.behind_filter(payload_torques(rows.motion, FixedPayload(mass=1.0)))
+        best = (0.0, 0.0, 0.0)
         inside = np.linspace(0.1, 0.9, _TRIED) * float(rows.motion.times[-1])
         for time in inside.tolist():
             column = np.zeros(len(fit.rest))

@@ -8,13 +8,15 @@ import numpy as np
 
 from runner.base import progress
 from runner.base.errors import RunnerError
+from runner.base.quantities import quantity
 from runner.identification.checks import find_payload_changes
 from runner.identification.fit import Fit, fit_logs, name_of
 from runner.identification.friction_kinds import TERMS
 from runner.identification.log_rows import LogRows, read_rows
 from runner.identification.parameters import ParameterSum, base_sums
 from runner.identification.result import Untold
-from runner.recordings.columns_map import AMPERE, ColumnsMap, read_map
+from runner.identification.system import Layout
+from runner.recordings.columns_map import ColumnsMap, read_map
 from runner.recordings.consistency import check_consistency
 from runner.recordings.recording import Recording, read_recording
 from runner.recordings.smoothing import cutoff
@@ -51,9 +53,23 @@ class ArmLogs:
         return self.recordings[0].side == "motor"
 
     @property
-    def currents(self) -> list[str]:
-        """Joints whose torques are currents times a constant."""
-        return [str(column.torque) for column in self.said[0].columns.values() if column.unit == AMPERE]
+    def constants(self) -> dict[str, float]:
+        """Torque constants in the first column map by joint; see torque_constants."""
+        return torque_constants(self.said[0])
+
+    @property
+    def currents(self) -> list[int]:
+        """Places of the joints whose torque constants are fitted: none, unless the known payloads of logs differ."""
+        carried = [one.payload if one.payload is not None and one.payload.mass else None for one in self.said]
+        if all(payload == carried[0] for payload in carried):
+            return []
+        return [place for place, joint in enumerate(self.model.joint_names) if joint in self.constants]
+
+
+def torque_constants(said: ColumnsMap) -> dict[str, float]:
+    """Return the torque constants of a column map by joint, in N m/A; none where torques are no currents."""
+    columns = said.columns.values()
+    return {str(each.torque): each.constant for each in columns if each.torque and each.constant is not None}
 
 
 def read_question(
@@ -85,15 +101,21 @@ def read_question(
                 "`runner compare` identifies friction without it."
             )
         recording = read_recording(path, said, factors, fill_gaps)
-        verdict = check_consistency(model, recording)
+        verdict = check_consistency(said.loaded(model), recording)
         if verdict.questions:
             raise RunnerError(f"{columns}: {' '.join(verdict.questions)}")
         recordings.append(recording)
         found.append(said)
-        notes.append([*recording.notes, *verdict.notes])
+        carried = [] if said.payload is None else [f"it carries {quantity(said.payload.mass, 'kg')}"]
+        notes.append([*carried, *recording.notes, *verdict.notes])
     if len({(recording.side, recording.held) for recording in recordings}) > 1:
         raise RunnerError("--columns: the maps differ in side or torque. Allowed: torques of one kind in all logs.")
-    return ArmLogs(robot, model, urdf, recordings, found, notes)
+    logs_of_arm = ArmLogs(robot, model, urdf, recordings, found, notes)
+    if logs_of_arm.currents and any(torque_constants(said) != logs_of_arm.constants for said in found):
+        raise RunnerError(
+            "--columns: the maps differ in constant, which the payloads determine. Allowed: the same in all maps."
+        )
+    return logs_of_arm
 
 
 @dataclass(frozen=True)
@@ -129,7 +151,7 @@ def examine_logs(question: ArmLogs) -> IdentificationExamination:
             f"{question.recordings[0].path}: no joint moves fast enough in both directions, or no torque can be used: "
             f"{'; '.join(dict.fromkeys(text for each in rows for text in each.motion.unusable if text)) or 'slow'}."
         )
-    fit = fit_logs(rows, "coulomb")
+    fit = fit_logs(rows, "coulomb", currents=question.currents)
     payloads = [
         f"{change.log}: the payload seems to change by {change.mass:+.2g} kg at {change.time:.3g} s"
         for change in find_payload_changes(fit, rows)
@@ -147,8 +169,8 @@ def rows_of(question: ArmLogs, sums: Sequence[ParameterSum], frequency: float) -
     """Return the equations at the rows of all logs, behind a low-pass with a cut-off in Hz."""
     model = question.model if question.rotors else question.model.with_armature(np.zeros(question.model.nq))
     return [
-        read_rows(recording, model, sums, question.rotors, frequency, recording.path.name)
-        for recording in question.recordings
+        read_rows(recording, model, sums, question.rotors, frequency, said.payload)
+        for recording, said in zip(question.recordings, question.said, strict=True)
     ]
 
 
@@ -186,13 +208,13 @@ def find_untold(question: ArmLogs, sums: Sequence[ParameterSum], fit: Fit) -> It
             name = name_of(layout, column, names, joints)
             mixed = [name_of(layout, fit.taken[place], names, joints) for place in columns_in_sum(fit, column)]
             reason = f"only in a sum with {_listed(mixed)}" if mixed else "the logs hold no motion that it acts in"
-            yield Untold(name, reason, _motion_for(column, layout.base, sums, joints, len(TERMS[layout.kind])))
+            yield Untold(name, reason, _motion_for(column, layout, sums, joints))
     for column in find_weak(fit):
         name = name_of(layout, column, names, joints)
         share = _moved(fit, column)
         wide = f"its interval would move the torque by {100.0 * share:.0f} %"
         reason = wide if np.isfinite(share) else "the logs have too few rows for an interval"
-        yield Untold(name, reason, _motion_for(column, layout.base, sums, joints, len(TERMS[layout.kind])))
+        yield Untold(name, reason, _motion_for(column, layout, sums, joints))
 
 
 def _listed(names: Sequence[str]) -> str:
@@ -222,10 +244,13 @@ def find_weak(fit: Fit) -> list[int]:
     return [column for column in fit.taken if column != delay and not _moved(fit, column) <= _WEAK]
 
 
-def _motion_for(column: int, base: int, sums: Sequence[ParameterSum], joints: Sequence[str], terms: int) -> str:
+def _motion_for(column: int, layout: Layout, sums: Sequence[ParameterSum], joints: Sequence[str]) -> str:
     """Return a motion that would determine a column."""
-    if column >= base:
-        joint = joints[(column - base) // terms]
+    if column >= layout.constants:
+        joint = joints[layout.currents[column - layout.constants]]
+        return f"let {joint} turn the payload through other directions against gravity, or carry a heavier one"
+    if column >= layout.base:
+        joint = joints[(column - layout.base) // len(TERMS[layout.kind])]
         return f"move {joint} in both directions, at several speeds and in several postures"
     own = sums[column].column
     place = own // 10 if own < 10 * len(joints) else own - 10 * len(joints)

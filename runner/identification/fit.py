@@ -1,11 +1,12 @@
 r"""Weighted, robust least squares of the torques of logs, with intervals.
 
-.. math:: \tau(t + d) = Y(q, \dot q, \ddot q)\, \pi + I_a \ddot q + \tau_f(\dot q, \tau_l)
+.. math:: s\,\tau(t + d) = Y(q, \dot q, \ddot q)\, \pi + I_a \ddot q + \tau_f(\dot q, \tau_l) + \tau_m(t)
 
 Each joint has a weight from its residuals in a fit in which all joints count alike (Gautier, IEEE ICRA 1997). These
 weights are not renewed: where the equations of the joints contradict each other, a joint that explains itself would
 count ever more. Rows far outside, such as contacts, count less (Huber, Annals of Mathematical Statistics 35(1), 1964).
-The delay d of the torques is found by Gauss-Newton steps.
+The delay d of the torques is found by Gauss-Newton steps. So are torque constants, of which s corrects those of the
+column map, if logs with different known payloads tau_m are given: a payload in all logs could be part of the last link.
 
 Residuals are correlated in time, so rows are combined to blocks whose length follows from the residuals. With several
 logs, the spread of their separate fits beyond these intervals is added (DerSimonian and Laird, Controlled Clinical
@@ -85,15 +86,18 @@ class Fit:
         return float(values[0] / values[-1])
 
 
-def fit_logs(logs: Sequence[LogRows], kind: FrictionKind, start: FloatArray | None = None) -> Fit:
+def fit_logs(
+    logs: Sequence[LogRows], kind: FrictionKind, start: FloatArray | None = None, currents: Sequence[int] = ()
+) -> Fit:
     """Return the fit of a kind of friction to logs.
 
     Args:
         logs: Rows of the logs.
         kind: Kind of friction.
         start: Base parameters from which the steps begin, shape (number of sums,); None for zero.
+        currents: Joints whose torque constants are fitted.
     """
-    state, taken, factors, sizes = solve_logs(logs, kind, start)
+    state, taken, factors, sizes = solve_logs(logs, kind, start, currents)
     system = linear_system(logs, state, True)
     rest = _rest(system, state)
     weights, outside = row_weights(system, rest, sizes)
@@ -101,14 +105,17 @@ def fit_logs(logs: Sequence[LogRows], kind: FrictionKind, start: FloatArray | No
 
 
 def solve_logs(
-    logs: Sequence[LogRows], kind: FrictionKind, start: FloatArray | None = None
+    logs: Sequence[LogRows], kind: FrictionKind, start: FloatArray | None = None, currents: Sequence[int] = ()
 ) -> tuple[State, list[int], FloatArray, FloatArray]:
     """Return the values of a fit, the columns that the logs tell apart, their sums, and the residuals' joint sizes."""
     nb, nq = logs[0].Y.shape[2], logs[0].motion.model.nq
-    layout = Layout(kind, nb, nq)
+    layout = Layout(kind, nb, nq, currents)
+    constants = slice(layout.constants, layout.delay)
     values = np.zeros(layout.delay + 1)
     values[:nb] = 0.0 if start is None else start
-    state = State(layout, values, 0.0, np.full(nq, SHAPES[len(SHAPES) // 2]))
+    state = State(layout, values, 0.0, np.full(nq, SHAPES[len(SHAPES) // 2]), np.ones(nq))
+    if currents:
+        state = replace(state, scales=_first_scales(linear_system(logs, state, False)))
     taken: list[int] = []
     factors, sizes = np.zeros((0, 0)), np.ones(nq)
     weights: FloatArray | None = None
@@ -122,9 +129,11 @@ def solve_logs(
         change = float(values[layout.delay]) if step > 1 else np.inf
         delay = float(np.clip(state.delay + (change if step > 1 else 0.0), -_LONGEST_DELAY, _LONGEST_DELAY))
         still = np.abs(values[:nb] - state.values[:nb]).max(initial=0.0)
-        values[layout.delay] = 0.0
-        state = replace(state, values=values, delay=delay)
-        rest = _rest(system, state)
+        gains, scales = values[constants].copy(), state.scales.copy()
+        scales[list(currents)] *= 1.0 + gains
+        values[constants.start :] = 0.0
+        state = replace(state, values=values, delay=delay, scales=scales)
+        rest = _rest(system, state) - system.X[:, constants] @ gains
         if step < _ALIKE:
             sizes = residual_sizes(system, rest)
         weights = row_weights(system, rest, sizes)[0]
@@ -133,9 +142,31 @@ def solve_logs(
         if kind in SHAPED and step < 3:
             state = replace(state, shapes=_best_shapes(logs, state, system, weights))
         settled = abs(change) < _STEADY and still < _SETTLED * (1.0 + np.abs(values[:nb]).max(initial=0.0))
+        settled &= np.abs(gains).max(initial=0.0) < _SETTLED
         if step > _ALIKE and settled:
             break
     return state, taken, factors, sizes
+
+
+def _first_scales(system: System) -> FloatArray:
+    """Return factors of the torque constants from linear equations, shape (nq,), a little low due to noise; else 1."""
+    layout, used = system.layout, system.moving
+    recorded, carried = (system.y + system.carried)[used], system.carried[used]
+    columns, weights = np.zeros((len(recorded), layout.nq)), np.ones(len(recorded))
+    for joint in np.unique(system.joint).tolist():
+        own = system.joint[used] == joint
+        weights[own] /= max(float(np.std(recorded[own])), 1e-9)
+        if joint in layout.currents:
+            columns[own, joint] = -recorded[own]
+    X = np.column_stack([system.X[used, : layout.constants], columns]) * weights[:, None]
+    told = group_columns(X, range(X.shape[1]), _TOLD_APART)[0]
+    others = [layout.constants + joint for joint in layout.currents if layout.constants + joint not in told]
+    y = -carried * weights - X[:, others].sum(axis=1)
+    scales = np.ones(layout.nq)
+    for column, value in zip(told, np.linalg.lstsq(X[:, told], y, rcond=None)[0], strict=True):
+        if column >= layout.constants and value > 0.0:
+            scales[column - layout.constants] = value
+    return scales
 
 
 def _told_apart(system: System) -> tuple[list[int], FloatArray]:
@@ -345,11 +376,18 @@ def _block_length(system: System, rest: FloatArray, weights: FloatArray) -> floa
     return float(max(min(_TIMES_CORRELATION * correlated, lasts / _FEWEST_BLOCKS), min(_BLOCK, lasts / _FEWEST_BLOCKS)))
 
 
+def constant_name(joint: str) -> str:
+    """Return the name of the torque constant of a joint."""
+    return f"torque constant of {joint}"
+
+
 def name_of(layout: Layout, column: int, sums: Sequence[str], joints: Sequence[str]) -> str:
     """Return the name of a column."""
     if column < layout.base:
         return sums[column]
     if column == layout.delay:
         return "delay"
+    if column >= layout.constants:
+        return constant_name(joints[layout.currents[column - layout.constants]])
     joint, term = divmod(column - layout.base, len(TERMS[layout.kind]))
     return f"{TERMS[layout.kind][term]} of {joints[joint]}"

@@ -45,7 +45,7 @@ class HeldOut:
 
 def _share(errors: FloatArray, system: System, joint: int | None) -> float:
     own = np.ones(len(errors), dtype=bool) if joint is None else system.joint == joint
-    size = float(np.linalg.norm(system.y[own]))
+    size = float(np.linalg.norm((system.y + system.carried)[own]))
     return float(np.linalg.norm(errors[own])) / size if size > 0.0 else float("nan")
 
 
@@ -67,7 +67,7 @@ def stretches(system: System) -> NDArray[np.intp]:
 def predict_held_out(fit: Fit, logs: Sequence[LogRows], weights: FloatArray | None = None) -> HeldOut:
     """Return the errors of torques that are predicted from the other stretches.
 
-    Load, delay and v_s are those of the fit of all stretches.
+    Load, delay, v_s and torque constants are those of the fit of all stretches.
 
     Args:
         fit: The fit of all stretches, at its own cut-off.
@@ -75,7 +75,7 @@ def predict_held_out(fit: Fit, logs: Sequence[LogRows], weights: FloatArray | No
         weights: What errors of each joint count in `squares`, shape (nq,); None for those of the fit.
     """
     trained, judged = fit.system, linear_system(logs, fit.state, False)
-    columns = [column for column in fit.taken if column != fit.state.layout.delay]
+    columns = [column for column in fit.taken if column < fit.state.layout.constants]
     if weights is None:
         weights = joint_weights(fit)
     used = fit.weights > 0.0
@@ -133,7 +133,7 @@ def _errors(system: System, rows: NDArray[np.bool_], values: FloatArray) -> Floa
         terms = TERMS[layout.kind]
         dry = [number for number, term in enumerate(terms) if term not in ("viscous", "offset")]
         away = errors[rest] + friction[:, dry].sum(axis=1)
-        load = np.abs(X[rest, : layout.base] @ values[: layout.base])
+        load = np.abs(X[rest, : layout.base] @ values[: layout.base] + system.carried[rows][rest])
         level = friction_at_rest(layout.kind, values[place].tolist(), load)
         errors[rest] = np.sign(away) * np.maximum(np.abs(away) - level, 0.0)
     return errors

@@ -19,7 +19,7 @@ from runner.identification.examination import (
     rows_of,
     usual_cutoff,
 )
-from runner.identification.fit import Fit, fit_logs, name_of
+from runner.identification.fit import Fit, constant_name, fit_logs, name_of
 from runner.identification.friction_kinds import KINDS, SHAPED, TERMS, FrictionKind, term_unit
 from runner.identification.held_out import HeldOut, file_share, joint_weights, predict_held_out
 from runner.identification.log_rows import LogRows
@@ -75,7 +75,7 @@ def identify(
     tried: list[tuple[Fit, HeldOut, Sequence[LogRows], float]] = []
 
     def attempt(own: FrictionKind, rows: Sequence[LogRows], at: float) -> int:
-        fit = examined.fit if own == "coulomb" and rows is judged else fit_logs(rows, own)
+        fit = examined.fit if own == "coulomb" and rows is judged else fit_logs(rows, own, currents=question.currents)
         tried.append((fit, predict_held_out(fit, judged, weights), rows, at))
         return len(tried) - 1
 
@@ -117,7 +117,7 @@ def identify(
         robot=question.robot,
         urdf=question.urdf,
         side=question.recordings[0].side,
-        currents=question.currents,
+        currents=[joint for joint in question.constants if constant_name(joint) not in {one.name for one in values}],
         kind=layout.kind,
         forced=kind is not None,
         frequency=at,
@@ -204,20 +204,34 @@ def _with_prior(
             continue
         told = column in fit.taken and bool(np.isfinite(second.halves[column]))
         value, share = float(found.values[column]), float(found.shares[column])
-        inertial = column < layout.base
+        at, size, file = _scale(question, fit, column, base)
         yield IdentifiedParameter(
-            name_of(layout, column, names, joints), _unit(question, sums, fit, column), value,
-            float(found.halves[column]), float(fit.white[column]) if told else float(found.halves[column]),
-            float(base[column]) if inertial else None, float(second.values[column]) if told else value,
+            name_of(layout, column, names, joints), _unit(question, sums, fit, column), at + size * value,
+            abs(size) * float(found.halves[column]),
+            abs(size) * float(fit.white[column] if told else found.halves[column]),
+            file, at + size * (float(second.values[column]) if told else value),
             told and bool(second.differs[column]), told and bool(fit.spread[column]), (),
-            share if inertial else None,
+            share if column < layout.base else None,
         )  # fmt: skip
+
+
+def _scale(question: ArmLogs, fit: Fit, column: int, base: FloatArray) -> tuple[float, float, float | None]:
+    """Return a parameter for a column's value of 0, its change for 1, and its value in the robot's file or the map."""
+    layout = fit.state.layout
+    if column < layout.constants:
+        return 0.0, 1.0, float(base[column]) if column < layout.base else None
+    joint = layout.currents[column - layout.constants]
+    in_map = question.constants[question.model.joint_names[joint]]
+    found = in_map * float(fit.state.scales[joint])
+    return found, found, in_map
 
 
 def _unit(question: ArmLogs, sums: Sequence[ParameterSum], fit: Fit, column: int) -> str:
     layout = fit.state.layout
     if column < layout.base:
         return sums[column].unit
+    if column >= layout.constants:
+        return "N/A" if question.model.prismatic[layout.currents[column - layout.constants]] else "N m/A"
     joint, term = divmod(column - layout.base, len(TERMS[layout.kind]))
     return term_unit(TERMS[layout.kind][term], bool(question.model.prismatic[joint]))
 
@@ -227,13 +241,13 @@ def _parameter(
 ) -> IdentifiedParameter:  # fmt: skip
     layout, joints = fit.state.layout, question.model.joint_names
     names = [each.name for each in sums]
-    inertial = column < layout.base
+    at, size, file = _scale(question, fit, column, base)
     place = fit.taken.index(column)
     others = [other for other in range(layout.delay) if other not in fit.taken and place in columns_in_sum(fit, other)]
     return IdentifiedParameter(
-        name_of(layout, column, names, joints), _unit(question, sums, fit, column), float(fit.state.values[column]),
-        float(second.halves[column]),
-        float(fit.white[column]), float(base[column]) if inertial else None, float(second.values[column]),
+        name_of(layout, column, names, joints), _unit(question, sums, fit, column),
+        at + size * float(fit.state.values[column]), abs(size) * float(second.halves[column]),
+        abs(size) * float(fit.white[column]), file, at + size * float(second.values[column]),
         bool(second.differs[column]), bool(fit.spread[column]),
         [name_of(layout, each, names, joints) for each in others],
     )  # fmt: skip
@@ -256,7 +270,7 @@ def _accuracy(
         return [float(f"{parts[log][row]:.6g}") for log, row in zip(system.log[shown], system.row[shown], strict=True)]
 
     layout = fit.state.layout
-    load = system.X[shown, : layout.base] @ fit.state.values[: layout.base]
+    load = system.X[shown, : layout.base] @ fit.state.values[: layout.base] + system.carried[shown]
     return JointAccuracy(
         question.model.joint_names[joint], question.model.joint_units[joint], held.share(joint),
         file_share(held.system, base, joint), len(used), 1.0 - float(np.mean(system.moving[own])),

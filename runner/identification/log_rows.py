@@ -12,7 +12,7 @@ from runner.base.arrays import FloatArray
 from runner.base.errors import RunnerError
 from runner.identification.friction_kinds import JointSpeeds
 from runner.identification.parameters import ParameterSum
-from runner.recordings.columns_map import Signal, stacked
+from runner.recordings.columns_map import FixedPayload, Signal, stacked
 from runner.recordings.equations import EvenRows, motion_of
 from runner.recordings.recording import Recording
 from runner.recordings.smoothing import derivative, evenly
@@ -31,12 +31,14 @@ class LogRows:
         motion: Rows at which the equations are evaluated.
         Y: Columns of the base parameters, shape (N, nq, number of sums).
         base: The same behind the low-pass at the kept rows, shape (M, nq, number of sums).
+        payload: Torques of the known payload, shape (N, nq), in N m.
     """
 
     name: str
     motion: EvenRows
     Y: FloatArray
     base: FloatArray
+    payload: FloatArray
 
     @cached_property
     def speed(self) -> FloatArray:
@@ -78,7 +80,12 @@ class LogRows:
 
 
 def read_rows(
-    recording: Recording, model: RobotModel, sums: Sequence[ParameterSum], rotors: bool, frequency: float, name: str
+    recording: Recording,
+    model: RobotModel,
+    sums: Sequence[ParameterSum],
+    rotors: bool,
+    frequency: float,
+    payload: FixedPayload | None = None,
 ) -> LogRows:
     """Return the equations at the rows of a log.
 
@@ -88,7 +95,7 @@ def read_rows(
         sums: Base parameters.
         rotors: Whether the torques turn the rotors.
         frequency: Cut-off of the low-pass on both sides, in Hz.
-        name: Name of the log.
+        payload: What the arm carried; None for nothing.
 
     Raises:
         RunnerError: if the log is too short, or lacks positions or torques.
@@ -120,23 +127,25 @@ def read_rows(
     if not len(motion.kept):
         raise RunnerError(f"{recording.path}: lasts {recording.duration:.3g} s, too short for a filter of "
                           f"{frequency:g} Hz. Needed: a longer log.")  # fmt: skip
-    return log_rows(motion, sums, rotors, name)
+    return log_rows(motion, sums, rotors, recording.path.name, payload)
 
 
-def log_rows(motion: EvenRows, sums: Sequence[ParameterSum], rotors: bool, name: str) -> LogRows:
+def log_rows(
+    motion: EvenRows, sums: Sequence[ParameterSum], rotors: bool, name: str, payload: FixedPayload | None = None
+) -> LogRows:
     """Return the equations at rows; see read_rows."""
     Y = motion.regressor()
     if rotors:
         Y = np.concatenate([Y, motion.ddq[:, :, None] * np.eye(motion.model.nq)], axis=2)
     Y = Y[:, :, [each.column for each in sums]]
     base = np.stack([motion.behind_filter(Y[:, joint]) for joint in range(motion.model.nq)], axis=1)
-    return LogRows(name, motion, Y, base)
+    carried = np.zeros_like(motion.q) if payload is None or not payload.mass else payload_torques(motion, payload)
+    return LogRows(name, motion, Y, base, carried)
 
 
-def payload_columns(rows: LogRows) -> FloatArray:
-    """Return the torques of a mass of 1 kg at the tip, behind the low-pass, shape (M, nq), in N m."""
-    motion = rows.motion
-    with_mass = motion.model.with_payload(1.0)
-    pin_model, data = with_mass.separate()
+def payload_torques(motion: EvenRows, payload: FixedPayload) -> FloatArray:
+    """Return the torques of a mass that is fixed at the tip, shape (N, nq), in N m."""
+    loaded = motion.model.with_payload(payload.mass, np.array(payload.position))
+    pin_model, data = loaded.separate()
     torques = np.array([pin.rnea(pin_model, data, *row) for row in zip(motion.q, motion.dq, motion.ddq, strict=True)])
-    return motion.behind_filter(torques - motion.rigid_torques())
+    return np.asarray(torques - motion.rigid_torques())

@@ -28,7 +28,7 @@ class IdentifiedParameter:
         value: Its value.
         half: Half-width of its 95 % interval.
         white: The same if residuals were not correlated, as most tools take them.
-        file: The value of the robot's file; None for friction.
+        file: The value of the robot's file; of a torque constant that of the column map; None for friction.
         second: The value of ordinary least squares.
         differs: True if both methods differ as chance makes them in less than 1 % of cases; `half` contains it.
         spread: True if the logs differ as chance makes them in less than 0.1 % of cases; `half` contains it.
@@ -79,7 +79,7 @@ class JointAccuracy:
         time: Times of shown rows, in s; log by log.
         position: Positions in these, in rad.
         speed: Speeds, in rad/s.
-        load: Torques of links and rotor, in N m.
+        load: Torques of links, rotor and payload, in N m.
         residual: What the fit leaves over, in N m.
     """
 
@@ -151,7 +151,7 @@ class Identification:
         robot: Name of the robot.
         urdf: Its file.
         side: Side of the gears on which torques are measured: motor or link.
-        currents: Joints whose torques are currents times a constant.
+        currents: Joints whose torques are currents times the constant of the column map.
         kind: Kind of friction.
         forced: True if the kind was given by the user.
         frequency: Cut-off on both sides of the equations, in Hz.

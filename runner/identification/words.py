@@ -4,6 +4,7 @@ from collections.abc import Iterator, Sequence
 
 from runner.base.quantities import quantity
 from runner.identification.examination import IdentificationExamination
+from runner.identification.fit import constant_name
 from runner.identification.friction_kinds import WORDS
 from runner.identification.result import Identification, IdentifiedParameter
 
@@ -45,7 +46,19 @@ def answer_lines(found: Identification) -> Iterator[str]:
         yield f"Not determined: {_few([one.name for one in found.untold])}."
     if found.bodies:
         yield found.bodies
+    yield from _constants(found)
     yield from doubts(found)
+
+
+def _constants(found: Identification) -> Iterator[str]:
+    """Yield the torque constants that known payloads determine."""
+    own = [one for one in found.parameters if one.name.startswith(constant_name(""))]
+    if own:
+        values = [
+            f"{one.name.removeprefix(constant_name(''))} {one.value:.4g} ± {one.half:.2g} (map: {one.file:.4g})"
+            for one in own
+        ]
+        yield f"Torque constants in {own[0].unit} from the known payloads: {'; '.join(values)}."
 
 
 def doubts(found: Identification) -> Iterator[str]:
@@ -98,8 +111,8 @@ def _of_logs(found: Identification) -> Iterator[str]:
         yield BEHIND_GEARS
     if found.currents:
         yield (
-            f"The torques of {', '.join(found.currents)} are currents times a constant: each mass, inertia and "
-            "friction scales with it."
+            f"The torques of {', '.join(found.currents)} are currents times the constant of the column map: each mass, "
+            "inertia and friction scales with it. Logs with two known payloads determine it."
         )
 
 
@@ -129,14 +142,18 @@ def examination_lines(found: IdentificationExamination) -> Iterator[str]:
     determined = len(fit.taken) - (fit.state.layout.delay in fit.taken)
     yield (
         f"{determined} of {fit.state.layout.delay} parameters can be told apart: {len(found.sums)} sums of masses, "
-        f"inertias{' and rotor inertias' if question.rotors else ''}, the rest friction."
+        f"inertias{' and rotor inertias' if question.rotors else ''}, the rest friction"
+        f"{' and torque constants' if question.currents else ''}."
     )
     for one in found.untold:
         yield f"not determined: {one.name} ({one.reason}). To determine it, {one.motion}."
     if not question.rotors:
         yield BEHIND_GEARS
     if question.currents:
-        yield f"torques of {', '.join(question.currents)}: currents times a constant, with which all parameters scale"
+        joints = ", ".join(question.model.joint_names[place] for place in question.currents)
+        yield f"torques of {joints}: currents times a constant, which the known payloads determine"
+    elif question.constants:
+        yield f"torques of {', '.join(question.constants)}: currents times a constant, with which all parameters scale"
     held = "held from row to row" if question.recordings[0].held else "instant"
     yield f"torques: with gravity, {question.recordings[0].side} side, {held}"
     for recording, rows, notes in zip(question.recordings, found.rows, found.notes, strict=True):

@@ -5,14 +5,16 @@ from pathlib import Path
 from typing import Literal, NamedTuple, cast
 
 import numpy as np
-from pydantic import Field, FiniteFloat, NonNegativeInt, PositiveFloat, model_validator
+from pydantic import Field, FiniteFloat, NonNegativeFloat, NonNegativeInt, PositiveFloat, model_validator
 
 from runner.base.arrays import FloatArray
 from runner.base.data_file import read_data
 from runner.base.errors import RunnerError, nearest
 from runner.base.sanitize import quoted
+from runner.robots.model import RobotModel
 from runner.schema.model import StrictModel, absurd
 from runner.schema.units import WRITTEN
+from runner.schema.values import Vector
 
 AMPERE, PERCENT = "A", "%"
 SignalKind = Literal["position", "velocity", "acceleration", "torque", "tip", "reference"]
@@ -147,6 +149,24 @@ class MappedColumn(StrictModel):
         return Signal("tip", str(self.tip))
 
 
+class FixedPayload(StrictModel):
+    """A payload that the arm carried: a point mass fixed at the tip.
+
+    Attributes:
+        mass: Its mass, in kg.
+        position: Its position in the frame of the tip, in m.
+    """
+
+    mass: NonNegativeFloat
+    position: Vector = Field(default_factory=lambda: [0.0, 0.0, 0.0])
+
+    @property
+    def overrides(self) -> tuple[str, ...]:
+        """Overrides of a run with this payload."""
+        place = ",".join(f"{each!r}" for each in self.position)
+        return (f"robot.payload.mass={self.mass!r}", f"robot.payload.position=[{place}]")
+
+
 class ColumnsMap(StrictModel):
     """Signals in the columns of a recording.
 
@@ -159,6 +179,7 @@ class ColumnsMap(StrictModel):
         topic: Of a ROS bag: the topic of its joint states; None if it has only one.
         episode: Of a LeRobot data set: the episode; None for its longest.
         warmth: Temperature of the arm in this log, cold or warm; None if it is not known.
+        payload: What the arm carried in this log, besides what its model holds; None for nothing.
     """
 
     time: TimeColumn | None = None
@@ -168,6 +189,7 @@ class ColumnsMap(StrictModel):
     topic: str | None = None
     episode: NonNegativeInt | None = None
     warmth: Literal["cold", "warm"] | None = None
+    payload: FixedPayload | None = None
 
     @model_validator(mode="after")
     def _check(self) -> "ColumnsMap":
@@ -207,6 +229,12 @@ class ColumnsMap(StrictModel):
     def held(self) -> bool:
         """Whether a torque acts from its row to the next one."""
         return self.torque == "held" or self.holds == "commanded"
+
+    def loaded(self, model: RobotModel) -> RobotModel:
+        """Return an arm with the payload of this log."""
+        if self.payload is None:
+            return model
+        return model.with_payload(self.payload.mass, np.array(self.payload.position))
 
 
 class Factor(NamedTuple):

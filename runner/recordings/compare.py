@@ -9,7 +9,7 @@ import pinocchio as pin
 
 from runner.base.arrays import FloatArray
 from runner.base.errors import RunnerError
-from runner.recordings.columns_map import Signal, other_units, read_map
+from runner.recordings.columns_map import ColumnsMap, Signal, other_units, read_map
 from runner.recordings.consistency import check_consistency
 from runner.recordings.friction import Friction, identify_friction
 from runner.recordings.offset import Offset, find_lag, find_offset
@@ -135,6 +135,7 @@ def compare_recording(
     setting = setting_of(run)
     trace = setting.trace
     said, factors = read_map(columns, trace.joint_names, trace.joint_units)
+    _check_payload(said, run, columns)
     recording = read_recording(path, said, factors, fill_gaps)
     verdict = check_consistency(setting.config.arm.model, recording)
     if verdict.questions:
@@ -187,6 +188,15 @@ def compare_recording(
         follows_measured=follows_measured,
         by_commands=bool(commands),
     )
+
+
+def _check_payload(said: ColumnsMap, run: Run, columns: Path) -> None:
+    carried, wanted = run.config["robot"]["payload"], said.payload
+    if wanted is not None and (wanted.mass, wanted.position) != (carried["mass"], list(carried["position"])):
+        raise RunnerError(
+            f"{columns}: payload: the arm carried {wanted.mass:g} kg at {wanted.position}, in the run "
+            f"{carried['mass']:g} kg at {list(carried['position'])}. Make the run with {' '.join(wanted.overrides)}."
+        )
 
 
 def _lags(recording: Recording, setting: ComparedRun) -> Iterator[tuple[str, tuple[float, float]]]:

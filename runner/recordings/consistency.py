@@ -8,7 +8,8 @@ torque of the model \hat\tau_j, the lack of fit is
     c\,\mathrm{sgn}\,\dot q_j|}{|\tau_j|}
 
 The three columns stand for the inertia of the rotor and friction. As these cannot be below zero, the sign of a joint
-without gravity is seen, too. Another meaning of a column is asked for if it lowers the sum of the logarithms of all r
+without gravity is seen, too. The model's torque has a further factor where a current times a constant is recorded, as
+the constant may be wrong. Another meaning of a column is asked for if it lowers the sum of the logarithms of all r
 clearly: errors of masses, friction and payload do not.
 """
 
@@ -216,6 +217,7 @@ class _Judge:
         if recording.side == "link":
             self._model.armature = np.zeros(model.nq)
         self._tip = model.tip_frame
+        self.currents = [model.joint_names.index(signal.of) for signal in recording.currents]
 
     def rigid(self, motion: _Motion) -> FloatArray:
         """Return the torques of the model, shape (N, nq)."""
@@ -229,10 +231,12 @@ class _Judge:
         if len(recorded):
             rigid = self.rigid(motion)
             for joint in recorded.tolist():
-                speed = motion.dq[:, joint]
-                columns = np.column_stack([motion.ddq[:, joint], speed, np.sign(speed)])
-                y = motion.torque[:, joint]
-                found["torque", joint] = nnls(columns, y - rigid[:, joint])[1] / max(float(np.linalg.norm(y)), _ZERO)
+                y, model = motion.torque[:, joint], rigid[:, joint]
+                found["torque", joint] = (
+                    _left_over(motion, joint, y, model)  # its constant may be wrong
+                    if joint in self.currents
+                    else _left_over(motion, joint, y - model)
+                )
         axes = ~np.isnan(motion.tip[0])
         if axes.any():
             rest, swing = self.tip_rest(motion)[0], motion.tip[:, axes] - motion.tip[:, axes].mean(axis=0)
@@ -399,23 +403,27 @@ def _tip_offset(model: RobotModel, judge: _Judge, motion: _Motion) -> Iterator[s
 
 def _scales(judge: _Judge, motion: _Motion, recording: Recording, joints: Sequence[str]) -> Iterator[str]:
     """Yield a question for each torque that fits the model in another unit only."""
-    rigid = judge.rigid(motion) if not np.isnan(motion.torque[0]).all() else None
-    for (kind, joint), lack in judge.lacks(motion).items():
-        if kind != "torque" or lack < _DOUBTED or rigid is None:
-            continue
+    rigid = judge.rigid(motion)
+    for joint in np.flatnonzero(~np.isnan(motion.torque[0])).tolist():
         y, model = motion.torque[:, joint], rigid[:, joint]
         scale = float(y @ model) / max(float(model @ model), _ZERO)
-        if scale <= 0.0 or 1.0 / _OTHER_SCALE < scale < _OTHER_SCALE:
+        lack, then = _left_over(motion, joint, y - model), _left_over(motion, joint, y, model)
+        if scale <= 0.0 or 1.0 / _OTHER_SCALE < scale < _OTHER_SCALE or lack < _DOUBTED or then >= _HALVED * lack:
             continue
-        speed = motion.dq[:, joint]
-        columns = np.column_stack([model, motion.ddq[:, joint], speed, np.sign(speed)])
-        then = nnls(columns, y)[1] / max(float(np.linalg.norm(y)), _ZERO)
-        if then < _HALVED * lack:
-            name = recording.columns[Signal("torque", joints[joint])]
-            yield (
-                f"columns.{name}: the torque of {joints[joint]} is {scale:.3g} times the model's; {lack:.0%} is "
-                f'unexplained now, {then:.0%} then. Say its unit; of a per cent say unit: "%" and scale.'
-            )
+        name = recording.columns[Signal("torque", joints[joint])]
+        settles = 'its unit; of a per cent say unit: "%" and scale'
+        if joint in judge.currents:
+            settles = f"its constant: {recording.units[name].factor / scale:.3g} would fit"
+        yield (
+            f"columns.{name}: the torque of {joints[joint]} is {scale:.3g} times the model's; {lack:.0%} is "
+            f"unexplained now, {then:.0%} then. Say {settles}."
+        )
+
+
+def _left_over(motion: _Motion, joint: int, rest: FloatArray, *columns: FloatArray) -> float:
+    """Return the share of a recorded torque that columns, friction and a rotor do not explain of the rest of it."""
+    speed, size = motion.dq[:, joint], max(float(np.linalg.norm(motion.torque[:, joint])), _ZERO)
+    return float(nnls(np.column_stack([*columns, motion.ddq[:, joint], speed, np.sign(speed)]), rest)[1]) / size
 
 
 def _confirmed(

@@ -11,7 +11,7 @@ from runner.base.arrays import FloatArray
 from runner.base.errors import RunnerError
 from runner.base.tables import NumericTable
 from runner.recordings.clock import Clock, longest_step, read_clock
-from runner.recordings.columns_map import ColumnsMap, Factor, Holds, MappedColumn, Side, Signal, stacked
+from runner.recordings.columns_map import AMPERE, ColumnsMap, Factor, Holds, MappedColumn, Side, Signal, stacked
 from runner.recordings.files import read_log
 from runner.recordings.smoothing import CUTOFF, evenly
 from runner.schema.model import LARGEST
@@ -40,6 +40,7 @@ class Recording:
         filled: Gaps that were filled, in s.
         holds: What the torques are.
         side: The side of the gears on which torques are measured.
+        currents: Torques that are currents times a constant.
         notes: Messages for a user: what was done to rows and columns.
     """
 
@@ -52,6 +53,7 @@ class Recording:
     filled: Sequence[float]
     holds: Holds = "torque"
     side: Side = "motor"
+    currents: Sequence[Signal] = ()
     notes: Sequence[str] = ()
 
     @property
@@ -130,7 +132,10 @@ def to_recording(
         for column in said.columns.values()
     }
     columns = {column.signal: name for name, column in said.columns.items()}
-    return Recording(path, t, signals, columns, dict(factors), said.held, filled, said.holds, said.side, notes)
+    currents = [column.signal for column in said.columns.values() if column.unit == AMPERE]
+    return Recording(
+        path, t, signals, columns, dict(factors), said.held, filled, said.holds, said.side, currents, notes
+    )
 
 
 def _period(t: FloatArray) -> float:

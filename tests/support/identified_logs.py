@@ -8,6 +8,7 @@ import yaml
 
 from runner.assembly.validation import validate
 from runner.config.compose.compose import compose
+from runner.identification.log_rows import payload_torques
 from runner.identification.parameters import base_sums
 from runner.recordings.equations import motion_of
 
@@ -29,6 +30,7 @@ class KnownArm:
         self.rotors = random.uniform(0.1, 0.5, nq) if rotors else np.zeros(nq)
         self.viscous, self.coulomb = random.uniform(0.3, 1.0, nq), random.uniform(0.3, 1.0, nq)
         self.offset, self.by_load = random.uniform(-0.2, 0.2, nq), np.zeros(nq)
+        self.carried = None
         self.sums = base_sums(self.model, rotors)
         self.base = np.array([each.factors @ np.concatenate([self.links, self.rotors]) for each in self.sums])
         self._speeds, self._phases = random.uniform(0.8, 5.0, (3, nq)), random.uniform(0.0, 6.0, (3, nq))
@@ -46,6 +48,8 @@ class KnownArm:
         rigid = self.rotors * ddq
         for place, row in zip(rigid, zip(q, dq, ddq, strict=True), strict=True):
             place += np.reshape(pin.computeJointTorqueRegressor(pin_model, self._data, *row), (many, -1)) @ self.links
+        if self.carried is not None:
+            rigid += payload_torques(self.rows((None, q, dq, ddq, rigid), exact=True), self.carried)
         return rigid + self.viscous * dq + (self.coulomb + self.by_load * np.abs(rigid)) * np.sign(dq) + self.offset
 
     def log(self, duration=12.0, delay=0.0, moves=None, first=0.0):

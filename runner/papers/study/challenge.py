@@ -227,9 +227,14 @@ class _Challenge:
             answer = "holds"
         elif lost:
             why = f"{lost[0]} fails: {runs[lost[0]].failure}"
-        else:
+        elif not all(map(_is_without_values, failed)):
             answer = "turns"
         return FindingOutcome(variation.kind, variation.family, variation.label, answer, why), conditions
+
+
+def _is_without_values(condition: Condition) -> bool:
+    """Return whether a condition compares values none of which exists: neither side works there."""
+    return len(condition.values) > 1 and all(each.value is None for each in condition.values)
 
 
 def _moved(asked: Sequence[Condition], finer: Sequence[Condition]) -> Iterator[str]:

@@ -178,6 +178,24 @@ def test_a_log_without_commands_follows_its_measured_positions_and_says_so(cli, 
     assert runner.open_run(made).config["controller"]["kind"] == "joint_pd"
 
 
+@pytest.mark.costs(4)
+def test_the_payload_of_a_log_is_that_of_its_run(cli, tmp_path):
+    write_log(tmp_path / "log.csv")
+    cli("doctor", "log.csv", "--robot", "macro", "-o", "mine")
+    columns = tmp_path / "mine" / "columns.yaml"
+    columns.write_text(columns.read_text() + "\npayload: {mass: 0.5, position: [0.0, 0.0, 0.1]}\n")
+    ending = cli("compare", "log.csv", "--robot", "macro", "--columns", columns)
+    assert ending.code == 0
+    (made,) = (tmp_path / "outputs" / "runs").iterdir()
+    carried = runner.open_run(made).config["robot"]["payload"]
+    assert (carried["mass"], carried["position"]) == (0.5, [0.0, 0.0, 0.1])
+    columns.write_text(columns.read_text().replace("mass: 0.5", "mass: 0.6"))
+    ending = cli("compare", made, "log.csv", "--columns", columns)
+    assert ending.code == 2
+    assert "the arm carried 0.6 kg at [0.0, 0.0, 0.1], in the run 0.5 kg" in ending.err
+    assert "Make the run with robot.payload.mass=0.6 robot.payload.position=[0.0,0.0,0.1]." in ending.err
+
+
 @pytest.mark.parametrize(
     ("words", "told"),
     [

@@ -11,6 +11,7 @@ from support.identified_logs import KnownArm, write_log
 
 import runner
 from runner.identification.result import open_identification
+from runner.recordings.columns_map import FixedPayload
 from runner.reporting.identification_report import parameters
 from runner.reporting.mathml import faulty
 from runner.reporting.stored import compose_report
@@ -167,6 +168,49 @@ def test_a_current_says_what_scales_with_its_constant(arm, log, tmp_path, cli):
     ending = cli("identify", path, "--columns", columns, "--robot", "macro")
     assert ending.code == 2
     assert "all masses and friction scale with it" in ending.err
+
+
+@pytest.mark.costs(4)
+def test_two_known_payloads_determine_the_constants_of_currents(cli, tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    loaded, logs, maps = KnownArm("macro"), [], []
+    for number, payload in enumerate((None, {"mass": 2.0})):
+        loaded.carried = None if payload is None else FixedPayload(**payload)
+        t, q, dq, ddq, tau = loaded.log(16.0, first=20.0 * number)
+        currents = (tau + 0.05 * np.random.default_rng(number).normal(size=tau.shape)) / 40.0
+        path, columns = write_log(tmp_path, loaded.model, (t, q, dq, ddq, currents), f"{number}.csv")
+        said = yaml.safe_load(columns.read_text())
+        for name in ("torque_q1", "torque_q2", "torque_q3"):
+            said["columns"][name] |= {"unit": "A", "constant": 30.0}
+        columns.write_text(yaml.safe_dump(said | ({} if payload is None else {"payload": payload})))
+        logs.append(path)
+        maps.append(columns)
+    options = ["--robot", "macro", "--friction", "coulomb", "--cutoff", "10"]
+    words = ["identify", *logs, "--columns", maps[0], "--columns", maps[1], *options]
+    dry = cli(*words, "--dry-run").out
+    assert "torques of q1, q2, q3: currents times a constant, which the known payloads determine" in dry
+    assert "it carries 2 kg" in dry
+    ending = cli(*words)
+    assert "Torque constants in N m/A from the known payloads: q1 " in ending.out
+    assert "(map: 30)" in ending.out
+    assert "scales with it" not in ending.out
+    found = runner.open_identification(tmp_path / ending.out.splitlines()[-1])
+    values = [one for one in found.parameters if one.unit == "N m/A"]
+    assert [one.name for one in values] == [f"torque constant of q{joint}" for joint in (1, 2, 3)]
+    for one in values:
+        assert abs(one.value - 40.0) < min(2.0 * one.half, 1.0)
+    assert "of a torque constant" in parameters(found).caption
+    frame = found.to_frame()
+    truth = dict(zip([each.name for each in loaded.sums], loaded.base, strict=True))
+    assert np.mean([abs(frame.value[name] - value) <= frame.half[name] for name, value in truth.items()]) > 0.8
+    with_prior = runner.identify(*logs, columns=maps, robot="macro", friction="coulomb", cutoff=10.0, prior=0.3)
+    assert [one.value for one in with_prior.parameters if one.unit == "N m/A"] == pytest.approx(3 * [40.0], rel=0.02)
+    other = yaml.safe_load(maps[0].read_text())
+    other["columns"]["torque_q1"]["constant"] = 31.0
+    maps[0].write_text(yaml.safe_dump(other))
+    ending = cli(*words)
+    assert ending.code == 2
+    assert "the maps differ in constant" in ending.err
 
 
 @pytest.mark.parametrize(

@@ -91,6 +91,27 @@ def test_the_old_sentence_on_the_goal_is_turned_by_one_engine_for_both_sides(stu
     assert answers.get("the engine bullet") == "turns", found.left_out  # the same run there
 
 
+STUCK = """\
+# One
+
+{% set goal = metric("figure_5_8", "settling_time", "settling time of the pair") %}
+{% set macro = metric("macro_alone_goal", "macro_settling_time", "settling time of a Macro") %}
+
+::: stands The pair needs less than twice the time of a Macro.
+holds: goal < 2 * macro
+:::
+"""
+
+
+@pytest.mark.costs(4)
+def test_neither_side_works_where_friction_holds_both(study):
+    (found,) = study(GOAL.split("  other:")[0], STUCK, {"friction": [5.0]})
+    answers = {each.family: each for each in found.outcomes}
+    assert answers["seeds"].answer == "holds"
+    assert answers["friction"].answer == "cannot be asked"
+    assert "settling time of the pair: has no value" in answers["friction"].why
+
+
 ENGINES = {
     "study.yaml": ABOUT,
     "runs.yaml": """\

@@ -1,5 +1,7 @@
 """Contradictions between the signals of a made-up log: each single inverted, exchanged or rescaled joint."""
 
+from dataclasses import replace
+
 import numpy as np
 import pinocchio as pin
 import pytest
@@ -64,6 +66,19 @@ def scaled(signal, factor):
 
 def exchanged(one, other):
     return lambda signals: {**signals, one: signals[other], other: signals[one]}
+
+
+def test_a_current_may_have_a_wrong_constant_but_not_another_sign(arm):
+    torques = [Signal("torque", name) for name in arm.joint_names]
+    for factor, wanted in ((0.4, None), (2.5, None), (0.1, "Say its constant: "), (-1.0, "opposite sign")):
+        log = made(arm, change=scaled(torques[1], factor))
+        verdict = check_consistency(arm, replace(log, currents=torques))
+        if wanted is None:
+            assert verdict.questions == ()
+        else:
+            assert wanted in verdict.questions[0]
+    (question,) = check_consistency(arm, made(arm, change=scaled(torques[1], 0.1))).questions
+    assert "Say its unit; of a per cent" in question
 
 
 @pytest.mark.costs(2)

@@ -21,7 +21,10 @@ def _operation(work: Callable[[Any, Any], Any], swapped: bool = False) -> Callab
         def value(*runs: Run) -> Any:
             sides = first(*runs), second(*runs) if callable(second) else second
             left, right = sides[::-1] if swapped else sides
-            return None if left is None or right is None else work(left, right)
+            if left is None or right is None:
+                return None
+            with np.errstate(divide="ignore", invalid="ignore"):  # of rows where a signal is zero
+                return work(left, right)
 
         return Quantity(value)
 
