@@ -83,7 +83,7 @@ def _report_currents() -> bool:
     print(f"{_CURRENTS} worlds with currents, seeds {_CURRENTS_SEED} to {_CURRENTS_SEED + _CURRENTS - 1}")
     with ProcessPoolExecutor(os.cpu_count()) as pool:
         found = np.array(list(pool.map(examine_currents, range(_CURRENTS_SEED, _CURRENTS_SEED + _CURRENTS))))
-    constants, sums, _ = np.nanmean(found, axis=0)  # NaN where the logs tell no constant
+    constants, sums, _ = np.nanmean(found, axis=0)  # NaN where the logs tell none
     good = bool(min(constants, sums) >= 0.93)
     print(f"  torque constants covered {constants:6.1%}, other sums {sums:6.1%}{': met' if good else ': MISSED'}")
     print(f"  median error of a torque constant: {np.nanmedian(found[:, 2]):.2%}")
@@ -109,9 +109,13 @@ def examine_currents(seed: int) -> tuple[float, float, float]:
     hit = np.abs(fit.state.values[known] - wanted[known]) <= halves[known]
     places = [place for place in fit.taken if layout.constants <= place < layout.delay]
     errors = (fit.state.scales / gains - 1.0)[[layout.currents[place - layout.constants] for place in places]]
-    if not places:
-        return float("nan"), float(hit.mean()), float("nan")
-    return float(np.mean(np.abs(errors) <= halves[places])), float(hit.mean()), float(np.median(np.abs(errors)))
+    covered = np.abs(errors) <= halves[places]
+    return _share(covered), _share(hit), float(np.median(np.abs(errors))) if places else float("nan")
+
+
+def _share(values: NDArray[np.bool_]) -> float:
+    """Return the share that is true; NaN without values."""
+    return float(np.mean(values)) if len(values) else float("nan")
 
 
 @cache

@@ -36,6 +36,7 @@ _STEPS = 12
 _STEADY = 1e-7  # s, of the delay
 _SETTLED = 1e-6  # of the largest base parameter
 _LONGEST_DELAY = 0.05  # s
+_WRONG = 5.0  # largest factor of a torque constant; noise of a torque that tells none would make it vanish
 _BLOCK = 0.5  # s
 _TIMES_CORRELATION = 6.0  # a block is that many times as long as residuals are correlated
 _FEWEST_BLOCKS = 20
@@ -130,7 +131,7 @@ def solve_logs(
         delay = float(np.clip(state.delay + (change if step > 1 else 0.0), -_LONGEST_DELAY, _LONGEST_DELAY))
         still = np.abs(values[:nb] - state.values[:nb]).max(initial=0.0)
         gains, scales = values[constants].copy(), state.scales.copy()
-        scales[list(currents)] *= 1.0 + gains
+        scales[list(currents)] *= 1.0 + np.clip(gains, 1.0 / _WRONG - 1.0, _WRONG - 1.0)
         values[constants.start :] = 0.0
         state = replace(state, values=values, delay=delay, scales=scales)
         rest = _rest(system, state) - system.X[:, constants] @ gains
@@ -164,7 +165,7 @@ def _first_scales(system: System) -> FloatArray:
     y = -carried * weights - X[:, others].sum(axis=1)
     scales = np.ones(layout.nq)
     for column, value in zip(told, np.linalg.lstsq(X[:, told], y, rcond=None)[0], strict=True):
-        if column >= layout.constants and value > 0.0:
+        if column >= layout.constants and 1.0 / _WRONG < value < _WRONG:
             scales[column - layout.constants] = value
     return scales
 
