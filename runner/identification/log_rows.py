@@ -51,6 +51,11 @@ class LogRows:
         return self.motion.behind_filter(self.motion.signs)
 
     @cached_property
+    def carried(self) -> FloatArray:
+        """Filtered torques of the known payload, shape (M, nq), in N m."""
+        return self.motion.behind_filter(self.payload)
+
+    @cached_property
     def moving(self) -> NDArray[np.bool_]:
         """True where a joint moves in one direction and its torque can be used, shape (M, nq)."""
         return np.column_stack(

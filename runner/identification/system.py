@@ -117,8 +117,7 @@ def linear_system(logs: Sequence[LogRows], state: State, corrected: bool) -> Sys
     layout = state.layout
     parts = []
     for number, rows in enumerate(logs):
-        carried, raw = rows.motion.behind_filter(rows.payload), state.rigid(rows)
-        y = rows.torque(state.delay) * state.scales - carried
+        y, raw = rows.torque(state.delay) * state.scales - rows.carried, state.rigid(rows)
         loads = np.abs(raw)
         columns = [state.friction_columns(rows, joint, loads[:, joint]) for joint in range(layout.nq)]
         for joint, own in enumerate(columns):
@@ -137,7 +136,7 @@ def linear_system(logs: Sequence[LogRows], state: State, corrected: bool) -> Sys
             if joint in layout.currents:  # of the modelled torque: the recorded one would add its noise
                 X[:, layout.constants + layout.currents.index(joint)] = -whole[:, joint]
             numbers = (np.full(many, joint), np.full(many, number), np.arange(many))
-            parts.append((X, y[:, joint], carried[:, joint], *numbers, rows.motion.times, rows.moving[:, joint]))
+            parts.append((X, y[:, joint], rows.carried[:, joint], *numbers, rows.motion.times, rows.moving[:, joint]))
     X, y, carry, joint_of, log_of, row_of, time, moving = (np.concatenate(each) for each in zip(*parts, strict=True))
     periods = [float(np.median(np.diff(rows.motion.times))) if len(rows.motion.times) > 1 else 1.0 for rows in logs]
     return System(layout, X, y, carry, joint_of, log_of, row_of, time, moving, periods)
