@@ -198,8 +198,14 @@ KINDS = (
 
 @contextmanager
 def made_up_kinds(folder: Path) -> Iterator[Path]:
-    """Add the made-up kinds to the registries; their options are written to a folder, which is returned."""
+    """Add the made-up kinds to the registries; their options are written to a folder, which is returned.
+
+    Raises:
+        ValueError: if the runner has a kind of such a name.
+    """
     for kind in KINDS:
+        if kind.name in kind.kinds._modules:
+            raise ValueError(f"{kind.option}: the runner has this kind; rename the one in {Path(__file__).name}")
         path, module = folder / kind.kinds.group / f"{kind.name}.yaml", kind.module()
         path.parent.mkdir(parents=True, exist_ok=True)
         path.write_text(kind.text())
