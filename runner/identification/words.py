@@ -17,8 +17,8 @@ _FEW = 4
 
 
 def per_cent(share: float) -> str:
-    """Return a share in per cent, with two digits."""
-    return f"{100.0 * share:.{0 if share > 0.0995 else 1}f} %"
+    """Return a share in per cent, with two digits where it is above 1 %."""
+    return f"{100.0 * share:.{0 if share > 0.0995 else 1 if share > 0.00095 else 2}f} %"
 
 
 def answer_lines(found: Identification) -> Iterator[str]:
