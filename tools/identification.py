@@ -95,9 +95,7 @@ def examine_currents(seed: int) -> tuple[float, float, float]:
     random = np.random.default_rng(seed)
     arm = str(random.choice(_ARMS))
     model, sums = _model(arm), _sums(arm)
-    full = np.concatenate([model.inertial_parameters, random.uniform(0.05, 0.5, model.nq)])
-    full = full * random.uniform(0.7, 1.3, len(full))
-    base = np.array([each.factors for each in sums]) @ full
+    base = _true_sums(random, model, sums)
     drawn = _Friction(random, model, "coulomb", base, sums)
     gains = np.exp(random.uniform(-0.4, 0.4, model.nq))
     payload = FixedPayload(mass=float(random.uniform(0.05, 0.3) * model.inertial_parameters[::10].sum()))
@@ -136,10 +134,7 @@ def examine_world(seed: int) -> World:
     truth, fitted = _draw(random, _RIGHT if right else _WRONG)
     count = int(random.integers(1, 4)) if right else 3
     model, sums = _model(arm), _sums(arm)
-    names = [each.factors for each in sums]
-    full = np.concatenate([model.inertial_parameters, random.uniform(0.05, 0.5, model.nq)])
-    full = full * random.uniform(0.7, 1.3, len(full))
-    base = np.array(names) @ full
+    base = _true_sums(random, model, sums)
     drawn = _Friction(random, model, truth, base, sums)
     delay = float(random.uniform(0.0, 8e-3))
     size = float(random.uniform(0.005, 0.03))
@@ -152,6 +147,13 @@ def examine_world(seed: int) -> World:
     flags = find_flags(fit, logs)
     label = f"{truth} as {fitted}, {count} logs, {arm}"
     return World(right, count, float(hit.mean()), len(known), bool(flags), label)
+
+
+def _true_sums(random: np.random.Generator, model: RobotModel, sums: Sequence[ParameterSum]) -> FloatArray:
+    """Return drawn values of the base parameters of an arm."""
+    full = np.concatenate([model.inertial_parameters, random.uniform(0.05, 0.5, model.nq)])
+    full = full * random.uniform(0.7, 1.3, len(full))
+    return np.array([each.factors for each in sums]) @ full
 
 
 def _is_alone(fit: Fit, place: int) -> bool:

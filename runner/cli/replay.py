@@ -13,7 +13,6 @@ from runner.config.compose.compose import compose
 from runner.doctor.log import LONGEST_GAP, examine_log
 from runner.doctor.log_files import MAP, MOTION, map_text
 from runner.recordings.columns_map import read_map
-from runner.robots.model import RobotModel
 from runner.store import Run
 from runner.sweeps import job
 from runner.sweeps.arm import arm_of
@@ -81,6 +80,8 @@ def replay(
     folder = outputs / FOLDER / digest
     for name, text in texts.items():
         write_atomically(folder / name, text.encode())
+    said = None if columns is None else read_map(columns, model.joint_names, model.joint_units)[0]
+    carried = said.payload.overrides if said is not None and said.payload is not None else ()
     overrides = (
         f"robot={robot}",
         f"controller={controller}",
@@ -88,18 +89,10 @@ def replay(
         f"trajectory.file={folder / MOTION}",
         "plant=rk4",
         f"outputs={outputs}",
-        *_carried(columns, model),
+        *carried,
     )
     run, _ = job.perform(job.RunJob(with_long_motion(validate(compose(overrides, config_dirs)))))
     filled = found.recording is not None and bool(found.recording.filled)
     return Replay(
         run, columns or folder / MAP, found.motion.commanded, found.motion.notes, LONGEST_GAP if filled else 0.0
     )
-
-
-def _carried(columns: Path | None, model: RobotModel) -> tuple[str, ...]:
-    """Return the overrides of the payload in a column map."""
-    if columns is None:
-        return ()
-    said, _ = read_map(columns, model.joint_names, model.joint_units)
-    return () if said.payload is None else said.payload.overrides

@@ -150,7 +150,6 @@ def log_rows(
 
 def payload_torques(motion: EvenRows, payload: FixedPayload) -> FloatArray:
     """Return the torques of a mass that is fixed at the tip, shape (N, nq), in N m."""
-    loaded = motion.model.with_payload(payload.mass, np.array(payload.position))
-    pin_model, data = loaded.separate()
+    pin_model, data = payload.fixed_on(motion.model).separate()
     torques = np.array([pin.rnea(pin_model, data, *row) for row in zip(motion.q, motion.dq, motion.ddq, strict=True)])
     return np.asarray(torques - motion.rigid_torques())

@@ -160,6 +160,10 @@ class FixedPayload(StrictModel):
     mass: NonNegativeFloat
     position: Vector = Field(default_factory=lambda: [0.0, 0.0, 0.0])
 
+    def fixed_on(self, model: RobotModel) -> RobotModel:
+        """Return an arm with this payload."""
+        return model.with_payload(self.mass, np.array(self.position))
+
     @property
     def overrides(self) -> tuple[str, ...]:
         """Overrides of a run with this payload."""
@@ -232,9 +236,7 @@ class ColumnsMap(StrictModel):
 
     def loaded(self, model: RobotModel) -> RobotModel:
         """Return an arm with the payload of this log."""
-        if self.payload is None:
-            return model
-        return model.with_payload(self.payload.mass, np.array(self.payload.position))
+        return model if self.payload is None else self.payload.fixed_on(model)
 
 
 class Factor(NamedTuple):

@@ -103,9 +103,9 @@ def parameters(found: Identification) -> Table:
     ]  # fmt: skip
     last = ["from the file (%)"] if with_prior else []
     header = ["parameter", "unit", *numbers("value", "95 % interval", "robot's file", *last), "rests on"]
-    caption = "Parameters that the logs determine; of a torque constant, the column map's value is that of the file."
-    if not any(one.unit.endswith("/A") for one in found.parameters):
-        caption = "Parameters that the logs determine."
+    caption = "Parameters that the logs determine."
+    if any(one.unit.endswith("/A") for one in found.parameters):
+        caption += " The file's value of a torque constant is that in the column map."
     if with_prior:
         caption = "Parameters by the logs and the robot's file, with the share of the file in each value."
     return Table(caption, header, rows)

@@ -199,7 +199,7 @@ def test_two_known_payloads_determine_the_constants_of_currents(cli, tmp_path, m
     assert [one.name for one in values] == [f"torque constant of q{joint}" for joint in (1, 2, 3)]
     for one in values:
         assert abs(one.value - 40.0) < min(2.0 * one.half, 1.0)
-    assert "of a torque constant" in parameters(found).caption
+    assert "value of a torque constant is that in the column map" in parameters(found).caption
     frame = found.to_frame()
     truth = dict(zip([each.name for each in loaded.sums], loaded.base, strict=True))
     assert np.mean([abs(frame.value[name] - value) <= frame.half[name] for name, value in truth.items()]) > 0.8
