@@ -129,12 +129,16 @@ def _count(outputs: Path) -> int:
 
 
 def _workers_of(pid: int) -> Iterator[int]:
-    children = Path(f"/proc/{pid}/task/{pid}/children").parent.parent
-    for tasks in children.glob("*/children"):
+    for child in _children(pid):
         with contextlib.suppress(OSError):
-            for child in map(int, tasks.read_text().split()):
-                if b"spawn_main" in Path(f"/proc/{child}/cmdline").read_bytes():
-                    yield child
+            if b"fork_workers" in Path(f"/proc/{child}/cmdline").read_bytes():
+                yield from _children(child)
+
+
+def _children(pid: int) -> Iterator[int]:
+    for tasks in Path(f"/proc/{pid}/task").glob("*/children"):
+        with contextlib.suppress(OSError):
+            yield from map(int, tasks.read_text().split())
 
 
 def _metrics(outputs: Path) -> dict[str, object]:

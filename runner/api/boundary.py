@@ -1,9 +1,7 @@
-"""Progress line, short errors and worker processes of the public functions."""
+"""Progress line and short errors of the public functions."""
 
 import functools
-import sys
-from collections.abc import Callable, Iterator
-from contextlib import contextmanager
+from collections.abc import Callable
 from dataclasses import fields
 from typing import Any, ParamSpec, TypeVar
 
@@ -35,20 +33,3 @@ def public(function: Callable[P, T]) -> Callable[P, T]:
 def public_class(kind: type[T], stored: Any) -> T:
     """Return a stored run, sweep or tuning as the public class that inherits from its class."""
     return kind(**{each.name: getattr(stored, each.name) for each in fields(stored)})
-
-
-@contextmanager
-def workers_only_work() -> Iterator[None]:
-    """Keep worker processes that start inside this context from running the user's program.
-
-    By default a new process imports the file of `__main__`. A plain script, with its sweep, would then start again in
-    each worker. The workers do not need that file.
-    """
-    main = sys.modules["__main__"].__dict__
-    kept: dict[str, Any] = {name: main[name] for name in ("__file__", "__spec__") if name in main}
-    main.pop("__file__", None)
-    main["__spec__"] = None
-    try:
-        yield
-    finally:
-        main.update(kept)

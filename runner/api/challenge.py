@@ -6,7 +6,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from runner.api import page
-from runner.api.boundary import public, public_class, workers_only_work
+from runner.api.boundary import public, public_class
 from runner.api.run import Run
 from runner.api.sweep import Sweep
 from runner.api.tuning import Tuning
@@ -105,6 +105,5 @@ def challenge(
     words += ["--without", ",".join(without)] if without else []
     command = shlex.join(["runner", "challenge", *words])
     allowed = read_budget(budget) if budget else ChallengeBudget()
-    with workers_only_work():
-        made = run_challenge(question, values, outputs_of(folders[0]), Engine(workers, None), command, allowed)
+    made = run_challenge(question, values, outputs_of(folders[0]), Engine(workers, None), command, allowed)
     return public_class(Challenge, made)

@@ -5,7 +5,7 @@ from collections.abc import Sequence
 from pathlib import Path
 
 from runner import store
-from runner.api.boundary import public, public_class, workers_only_work
+from runner.api.boundary import public, public_class
 from runner.api.functions import use_functions
 from runner.api.overrides import config_folders, run_overrides, sweep_overrides, tuning_overrides
 from runner.api.run import Run
@@ -85,8 +85,7 @@ def sweep(
     _reject_hydra(texts)
     engine, loader = Engine(workers, address), Composer(folders)
     plan, _ = plan_typed(entries, loader)
-    with workers_only_work():
-        ended = run_sweep(plan, engine, _command(["-m"], folders, texts))
+    ended = run_sweep(plan, engine, _command(["-m"], folders, texts))
     sweep = store.open_sweep(ended.folder)
     if not ended.left:
         work_out_sweep(sweep)
@@ -142,8 +141,7 @@ def tune(
     words += [f"--trials={trials}", f"--jobs={jobs}"]
     _check_counts(trials=trials, jobs=jobs)
     command = _command(["tune"], folders, [*texts, *words])
-    with workers_only_work():
-        made = tuning.tune([*texts, f"hydra.sweeper.workers={workers}"], objectives, trials, jobs, command, folders)
+    made = tuning.tune([*texts, f"hydra.sweeper.workers={workers}"], objectives, trials, jobs, command, folders)
     return public_class(Tuning, made)
 
 

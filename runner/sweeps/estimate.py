@@ -22,7 +22,7 @@ from runner.sweeps.plan import Plan
 from runner.sweeps.status import NOTE
 
 _EVERY = 2.0  # s between two updates of the pace
-START_UP = 3.0
+START_UP = 1.0
 """CPU time that a worker process takes until its first run, in s."""
 _PROBES = 3  # cells behind the first estimate, for each power of ten of ticks
 _PROBED_WITHIN = 2.0  # s, for the ticks of a probe

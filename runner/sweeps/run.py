@@ -33,11 +33,12 @@ from runner.store.names import Names
 from runner.sweeps.at_work import at_work, commands_at_work, commands_in
 from runner.sweeps.check import Checked, check
 from runner.sweeps.differing import Resolved
-from runner.sweeps.engine import in_process, local_client, on_cluster
+from runner.sweeps.engine import in_process, on_cluster
 from runner.sweeps.estimate import START_UP, Estimate, Pace, estimate
 from runner.sweeps.outcomes import Ends
 from runner.sweeps.part import GridPart, own_part, share_sweep
 from runner.sweeps.plan import Plan
+from runner.sweeps.processes import local_processes, on_processes
 from runner.sweeps.queue import Queue
 from runner.sweeps.remote import GO_ON, check_address, remote_workers
 from runner.sweeps.typed import plan_typed
@@ -320,7 +321,7 @@ def _workers(
     if engine.address is not None:
         with (
             remote_workers(engine.address) as remote,
-            contextlib.closing(on_cluster(queue, remote.client, remote)) as reports,
+            contextlib.closing(on_cluster(queue, remote)) as reports,
         ):
             processes = max(1, len(remote.usable()))
             tell(expected.in_words(processes, processes))
@@ -334,8 +335,8 @@ def _workers(
         workers = min(engine.workers, jobs)
         progress.begin("starting processes")
         with (
-            local_client(workers, _scratch(queue.rules)) as client,
-            contextlib.closing(on_cluster(queue, client)) as reports,
+            local_processes(workers, _scratch(queue.rules)) as local,
+            contextlib.closing(on_processes(queue, local)) as reports,
         ):
             yield reports
 
@@ -352,12 +353,13 @@ def duration_text(rules: Rules, jobs: int, engine: Engine, expected: Estimate) -
 def _seconds_in_process(rules: Rules, workers: int, expected: Estimate) -> float:
     """Return the time, in s, for which this process executes jobs before it starts workers for the rest.
 
-    Starting workers costs more than it saves if there are few jobs. Workers execute all jobs if a job may not end or
-    may crash its process.
+    Workers start if they save more time than the CPU time that their start costs. They execute all jobs if a job may
+    not end or may crash its process.
     """
     if workers == 0:
         return math.inf
-    pays_from = START_UP * workers / max(min(workers, os.cpu_count() or 1) - 1, 1)
+    together = min(workers, os.cpu_count() or 1)
+    pays_from = START_UP * workers * (together + 1) / max(together - 1, 1)
     alone = has_users_parts() or rules.settings.time_limit is not None or expected.known != "about"
     return 0.0 if alone or expected.seconds > pays_from else pays_from
 
@@ -367,8 +369,8 @@ def _begun_in_process(queue: Queue, workers: int, seconds: float) -> Generator[C
     end = time.monotonic() + seconds
     yield from in_process(queue, lambda: time.monotonic() < end)
     if queue.left:
-        with local_client(min(workers, queue.left), _scratch(queue.rules)) as client:
-            yield from on_cluster(queue, client)
+        with local_processes(min(workers, queue.left), _scratch(queue.rules)) as processes:
+            yield from on_processes(queue, processes)
 
 
 def _scratch(rules: Rules) -> Path:

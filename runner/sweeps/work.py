@@ -1,7 +1,6 @@
 """Worker of a sweep: simulation and storage of a chunk of runs and calibrations."""
 
 import contextlib
-import signal
 import threading
 import time
 import traceback
@@ -22,7 +21,7 @@ from runner.simulation.provenance import job_provenance
 from runner.simulation.results import RunResult
 from runner.store.shards import find_shards, outcome, read_outcomes, write_shard
 from runner.sweeps.batch import make_together
-from runner.sweeps.deadline import TimeLimitError, deadline
+from runner.sweeps.deadline import STUCK, TimeLimitError, deadline
 from runner.sweeps.job import CalibrationJob, RunJob, check_job
 from runner.sweeps.records import cut_short_record
 from runner.sweeps.writer import ResultWriter, Rules, without_trace, write_failure, write_log
@@ -87,11 +86,6 @@ class ChunkResult:
     seconds: float
     host: str = ""
     worker: str = ""
-
-
-def dask_setup(_worker: object) -> None:
-    """Ignore Ctrl-C, because the command ends its workers; Dask calls this in each process of `local_client`."""
-    signal.signal(signal.SIGINT, signal.SIG_IGN)
 
 
 def work(
@@ -222,8 +216,11 @@ def _try(make: Callable[[], Made], rules: Rules) -> tuple[Made | None, str, str]
     return None, *found
 
 
-def give_up(chunk: Chunk, reason: str) -> ChunkResult:
-    """Store the single job of a chunk as aborted because it crashes every worker."""
+def give_up(chunk: Chunk, deaths: int) -> ChunkResult:
+    """Store the single job of a chunk as aborted, because this number of workers died at it."""
+    reason = f"its worker process died {deaths} times"
+    if chunk.rules.settings.time_limit is not None:
+        reason += f", by itself or because it could not be interrupted for {STUCK:g} s after sweep.time_limit"
     (composed,), rules = [composed for _, composed in chunk.jobs], chunk.rules
     made = cut_short(check_job(composed), rules, reason)
     if isinstance(made, store.RunOutcome):

@@ -1,8 +1,7 @@
 """One result, wherever the runs are simulated: in this process, on processes of this machine, on a Dask cluster."""
 
-import contextlib
-import socket
-import ssl
+import os
+import shutil
 import subprocess
 import sys
 
@@ -13,15 +12,17 @@ from support.patience import PATIENCE
 from support.short_runs import DAMPING, FREQUENCY
 
 from runner import store
-from runner.base.errors import RunnerError
+from runner.base.errors import RunnerError, TemporaryError
 from runner.plugins.discovery import use_plugins
-from runner.sweeps import engine
+from runner.sweeps import processes
 from runner.sweeps.estimate import Estimate
+from runner.sweeps.processes import local_processes
 from runner.sweeps.queue import Queue
 from runner.sweeps.run import Engine
 
 GRID = ("noise=thesis", "robot=macro,mini", "plant=rk4,default", "seed=0,1", "repetitions=2", "duration=0.2,0.1")
 ROWS = 11  # of a trace of 0.1 s; longer runs are simulated before it
+BY_WORKERS = "sweep.time_limit=600"  # without it this process simulates a short sweep
 
 
 def results(ended):
@@ -39,7 +40,7 @@ def expected(sweep, tmp_path):
 
 @pytest.mark.slow  # the processes of the last test of this file do the same
 def test_processes_of_this_machine_give_what_this_process_gives(sweep, expected, tmp_path):
-    assert results(sweep(*GRID, engine=Engine(2, None))) == expected
+    assert results(sweep(*GRID, BY_WORKERS, engine=Engine(2, None))) == expected
     assert_nothing_is_left(tmp_path)
 
 
@@ -177,37 +178,27 @@ def test_a_scheduler_that_is_lost_is_said(sweep, gate, threads, tmp_path):
     assert store.open_run(stored.parent).config["duration"] == 0.2
 
 
-def answers(address, context=None):
-    """Return the answer at an address to HTTP, plain or through TLS, without a certificate."""
-    with contextlib.suppress(OSError), contextlib.ExitStack() as stack:
-        asked = stack.enter_context(socket.create_connection(address, PATIENCE))
-        asked = asked if context is None else stack.enter_context(context.wrap_socket(asked))
-        asked.sendall(b"GET /health HTTP/1.0\r\n\r\n")
-        return asked.recv(100)
-    return b""
+def places(pid):
+    """Return the addresses of the sockets of a process; a pipe has none."""
+    return {each.laddr for each in psutil.Process(pid).net_connections("all")} - {""}
 
 
-def listening():
-    """Return the addresses at which this process and those that it started listen."""
-    ours = psutil.Process()
-    places = [each for process in (ours, *ours.children(recursive=True)) for each in process.net_connections()]
-    return {each.laddr for each in places if each.status == psutil.CONN_LISTEN}
+@pytest.mark.costs(2)
+def test_no_other_process_can_reach_the_workers_of_this_machine(tmp_path):
+    with local_processes(2, tmp_path / "scratch") as processes:
+        pids = [worker.pipe.recv() for worker in processes.workers]
+        first = psutil.Process(pids[0]).parent()
+        assert [each.pid for each in first.children()] == pids
+        assert [places(pid) for pid in (first.pid, *pids)] == [set(), set(), set()]
+    assert [psutil.pid_exists(pid) for pid in (first.pid, *pids)] == [False, False, False]
+    assert not (tmp_path / "scratch").exists()
 
 
-@pytest.mark.costs(5)
-def test_processes_of_this_machine_listen_to_each_other_alone(tmp_path):
-    stranger = ssl.SSLContext(ssl.PROTOCOL_TLS_CLIENT)
-    stranger.check_hostname, stranger.verify_mode = False, ssl.CERT_NONE
-    before = listening()
-    with engine.local_client(2, tmp_path / "scratch") as client:
-        ports = listening() - before
-        known = client.scheduler_info()
-        workers = [place for worker, told in known["workers"].items() for place in (worker, told["nanny"])]
-        assert {f"tls://{ip}:{port}" for ip, port in ports} == {known["address"], *workers}
-        assert len(ports) == 5
-        assert {ip for ip, _ in ports} == {"127.0.0.1"}
-        assert {answers(port) for port in ports} == {answers(port, stranger) for port in ports} == {b""}
-        assert client.submit(sum, [1, 2]).result() == 3
+@pytest.mark.costs(2)
+def test_a_worker_that_ends_before_it_could_work_is_said(sweep, monkeypatch):
+    monkeypatch.setattr("runner.sweeps.processes.sys.executable", shutil.which("true"))
+    with pytest.raises(TemporaryError, match=r"^a worker process ended as it started; finished runs are stored"):
+        sweep("duration=0.05", "seed=0,1", BY_WORKERS, engine=Engine(2, None))
 
 
 # It does not guard itself by `if __name__ == "__main__"`, and a process that began it again would be seen.
@@ -228,16 +219,15 @@ def test_a_plain_script_makes_a_sweep_on_processes(tmp_path):
 
 
 DEADLY = """\
-import multiprocessing
 import os
 
-UNITS = {}
+UNITS = {{}}
 
 
 def evaluate(trace, context):
-    if multiprocessing.parent_process() is not None and len(trace.t) == 31:
+    if os.getpid() != {command} and len(trace.t) == 31:
         os._exit(1)
-    return {}
+    return {{}}
 """
 
 
@@ -245,7 +235,7 @@ def evaluate(trace, context):
 def deadly_metric(tmp_path, monkeypatch):
     """A metric of another package that brings a worker's process down after 30 ticks."""
     for name, text in (
-        ("deadly.py", DEADLY),
+        ("deadly.py", DEADLY.format(command=os.getpid())),
         ("deadly-1.0.dist-info/METADATA", "Metadata-Version: 2.1\nName: deadly\nVersion: 1.0\n"),
         ("deadly-1.0.dist-info/entry_points.txt", "[runner.metric]\ndeadly = deadly\n"),
     ):
@@ -258,16 +248,16 @@ def deadly_metric(tmp_path, monkeypatch):
 
 @pytest.mark.costs(5)
 @pytest.mark.usefixtures("deadly_metric")
-@pytest.mark.parametrize("deaths", [0, *(pytest.param(many, marks=pytest.mark.slow) for many in (1, 3))])
+@pytest.mark.parametrize("deaths", [1, pytest.param(4, marks=pytest.mark.slow)])
 def test_a_run_that_brings_its_workers_down_is_cut_short_and_the_others_are_as_made_in_this_process(
     sweep, monkeypatch, tmp_path, deaths
 ):
-    monkeypatch.setattr(engine, "_DEATHS", deaths)
+    monkeypatch.setattr(processes, "_DEATHS", deaths)
     overrides = ("noise=thesis", "repetitions=2", "duration=0.2,0.3,0.4")
     ended = sweep(*overrides, engine=Engine(1, None))
     ((cell, why, log),) = ended.failures
     assert "duration=0.3" in cell
-    assert why == f"cut short: its worker process died {deaths + 1} times"
+    assert why == f"cut short: its worker process died {deaths} times"
     assert why in log.read_text()
     assert_nothing_is_left(tmp_path)
     expected = results(sweep(*overrides, f"outputs={tmp_path}/expected"))

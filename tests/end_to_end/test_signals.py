@@ -6,13 +6,14 @@ import subprocess
 import sys
 from pathlib import Path
 
+import psutil
 import pytest
 from support.patience import PATIENCE, wait_until
 
 import runner
 from runner import store
 from runner.base import ticks
-from runner.sweeps import engine
+from runner.sweeps.processes import local_processes
 
 WHOLE = ["config.yaml", "metrics.json", "robot.urdf", "trace.parquet"]
 ROWS = 11  # of a trace of 0.1 s; longer runs are simulated before it
@@ -27,19 +28,15 @@ def stored(outputs):
     return sorted(store.open_run(folder).config["duration"] for folder in folders)
 
 
-def test_an_interrupt_waits_until_the_processes_have_started():
-    """Else a part of a cluster would be left, and its processes, still without our code, would print messages."""
-    before, began = signal.getsignal(signal.SIGINT), []
-
-    def start():
-        with engine._undisturbed():
-            signal.raise_signal(signal.SIGINT)
-            began.append(subprocess.run([sys.executable, "-c", "import signal; signal.raise_signal(2)"], check=False))
-
-    with pytest.raises(KeyboardInterrupt):
-        start()
-    assert [child.returncode for child in began] == [0]
-    assert signal.getsignal(signal.SIGINT) is before
+@pytest.mark.costs(2)
+def test_ctrl_c_does_not_reach_the_processes_of_a_command_as_they_start(tmp_path, capfd):
+    """Else they would print what it interrupted; the command ends them."""
+    with local_processes(1, tmp_path / "scratch") as processes:
+        (first,) = [each for each in psutil.Process().children() if "fork_workers" in "".join(each.cmdline())]
+        first.send_signal(signal.SIGINT)
+        os.kill(processes.workers[0].pipe.recv(), signal.SIGINT)
+    assert processes._first.returncode == 0
+    assert capfd.readouterr().err == ""
     assert signal.SIGINT not in signal.pthread_sigmask(signal.SIG_BLOCK, ())
 
 
@@ -73,10 +70,9 @@ def test_a_signal_ends_all_processes_and_says_how_to_go_on(tmp_path, gate, numbe
 
 
 CLOSING = """\
-import threading
 from pathlib import Path
 
-from distributed import Status, get_worker
+from runner.sweeps.forked import _closing
 
 UNITS = {{}}
 
@@ -85,8 +81,7 @@ def evaluate(trace, context):
     with Path({ends!r}).open("a") as file:
         file.write("a run\\n")
     stop()
-    while get_worker().status not in (Status.closing, Status.closed):
-        threading.Event().wait(0.001)
+    _closing.wait()
     return {{}}
 """
 
@@ -115,7 +110,7 @@ def test_a_second_ctrl_c_ends_a_sweep_at_once(tmp_path, gate):
     """A worker is at a run, and the command closes its workers, when it comes; both would wait for ever."""
     grid = ("robot=macro", "plant=rk4", "duration=0.1", "seed=0,1", "hydra.sweeper.workers=1")
     words = ("--plugin", gate.metric(ROWS), "-m", *grid)
-    command = gate.command("runner.sweeps.engine:_end_workers", 1, *words)
+    command = gate.command("runner.sweeps.processes:_Worker.send", 3, *words)  # two runs, and the end
     process = subprocess.Popen(command, cwd=tmp_path, stdout=-1, stderr=-1, text=True, start_new_session=True)
     try:
         assert gate.next_at() != process.pid

@@ -33,8 +33,8 @@ EXPECTED = 40.0
 def test_an_estimate_and_a_bound_are_told_with_the_start_of_processes_on_two_cores(
     tmp_path, monkeypatch, capsys, known, workers, words
 ):
-    monkeypatch.setattr(run, "local_client", lambda *_: contextlib.nullcontext())
-    monkeypatch.setattr(run, "on_cluster", lambda queue, _: in_process(queue))
+    monkeypatch.setattr(run, "local_processes", lambda *_: contextlib.nullcontext())
+    monkeypatch.setattr(run, "on_processes", lambda queue, _: in_process(queue))
     monkeypatch.setattr(run, "estimate", lambda *_: Estimate(EXPECTED, known))
     monkeypatch.setattr(run.os, "cpu_count", lambda: 2)
     plan = plan_sweep([*SHORT, "plant=rk4", f"outputs={tmp_path}", "seed=range(0,4)"])
@@ -45,8 +45,8 @@ def test_an_estimate_and_a_bound_are_told_with_the_start_of_processes_on_two_cor
 @pytest.mark.parametrize(
     ("seconds", "known", "overrides", "started"),
     [
-        (2 * START_UP, "about", [], []),
-        (2.1 * START_UP, "about", [], [2]),
+        (6 * START_UP, "about", [], []),  # two processes would take 3, after 1 of their start, and cost 2
+        (6.1 * START_UP, "about", [], [2]),
         (0.1, "more than", [], [2]),
         (0.1, "up to", [], [2]),
         (0.1, "about", ["sweep.time_limit=60"], [2]),
@@ -54,8 +54,8 @@ def test_an_estimate_and_a_bound_are_told_with_the_start_of_processes_on_two_cor
 )
 def test_workers_start_only_where_they_pay_or_protect(tmp_path, monkeypatch, seconds, known, overrides, started):
     workers = []
-    monkeypatch.setattr(run, "local_client", lambda count, _: contextlib.nullcontext(workers.append(count)))
-    monkeypatch.setattr(run, "on_cluster", lambda queue, _: in_process(queue))
+    monkeypatch.setattr(run, "local_processes", lambda count, _: contextlib.nullcontext(workers.append(count)))
+    monkeypatch.setattr(run, "on_processes", lambda queue, _: in_process(queue))
     monkeypatch.setattr(run, "estimate", lambda *_: Estimate(seconds, known))
     monkeypatch.setattr(run.os, "cpu_count", lambda: 2)
     monkeypatch.setattr(run, "time", SimpleNamespace(monotonic=lambda: 0.0))
@@ -65,9 +65,9 @@ def test_workers_start_only_where_they_pay_or_protect(tmp_path, monkeypatch, sec
 
 
 def test_workers_take_the_rest_of_what_takes_longer_than_expected(tmp_path, monkeypatch):
-    workers, clock = [], Steps(0.8 * START_UP)
-    monkeypatch.setattr(run, "local_client", lambda count, _: contextlib.nullcontext(workers.append(count)))
-    monkeypatch.setattr(run, "on_cluster", lambda queue, _: in_process(queue))
+    workers, clock = [], Steps(2.4 * START_UP)
+    monkeypatch.setattr(run, "local_processes", lambda count, _: contextlib.nullcontext(workers.append(count)))
+    monkeypatch.setattr(run, "on_processes", lambda queue, _: in_process(queue))
     monkeypatch.setattr(run, "estimate", lambda *_: Estimate(0.1))
     monkeypatch.setattr(run.os, "cpu_count", lambda: 2)
     monkeypatch.setattr(run, "time", SimpleNamespace(monotonic=clock))

@@ -22,12 +22,13 @@ OTHERS = {
     "plants/agreement.py", "plugin.py", "plugins/discovery.py", "plugins/folder_code.py", "recordings", "reporting",
     "schema/bound.py", "schema/model.py", "schema/units.py", "simulation/provenance.py", "simulation/tick_time.py",
     "statistics", "store", "sweeps/arm.py", "sweeps/at_work.py", "sweeps/batch.py", "sweeps/challenge",
-    "sweeps/changes.py", "sweeps/check.py", "sweeps/closed_nodes.py", "sweeps/deadline.py", "sweeps/differing.py",
-    "sweeps/drawn.py", "sweeps/engine.py", "sweeps/estimate.py", "sweeps/finer_step.py", "sweeps/gathering.py",
+    "sweeps/changes.py", "sweeps/check.py", "sweeps/deadline.py", "sweeps/differing.py", "sweeps/drawn.py",
+    "sweeps/engine.py", "sweeps/estimate.py", "sweeps/finer_step.py", "sweeps/forked.py", "sweeps/gathering.py",
     "sweeps/job.py", "sweeps/measurements.py", "sweeps/outcomes.py", "sweeps/part.py", "sweeps/plan.py",
-    "sweeps/preview.py", "sweeps/question.py", "sweeps/queue.py", "sweeps/records.py", "sweeps/remote.py",
-    "sweeps/rerun.py", "sweeps/rounding.py", "sweeps/run.py", "sweeps/slurm.py", "sweeps/status.py", "sweeps/swept.py",
-    "sweeps/table.py", "sweeps/template.py", "sweeps/tuning", "sweeps/typed.py", "sweeps/work.py", "sweeps/writer.py",
+    "sweeps/preview.py", "sweeps/processes.py", "sweeps/question.py", "sweeps/queue.py", "sweeps/records.py",
+    "sweeps/remote.py", "sweeps/rerun.py", "sweeps/rounding.py", "sweeps/run.py", "sweeps/slurm.py",
+    "sweeps/status.py", "sweeps/swept.py", "sweeps/table.py", "sweeps/template.py", "sweeps/tuning",
+    "sweeps/typed.py", "sweeps/work.py", "sweeps/writer.py",
 }  # fmt: skip
 TREE = {
     "laws/__init__.py": 'from runner.laws.pd import Law\nKINDS = {"pd": "runner.laws.pd"}\n',
