@@ -76,6 +76,7 @@ def today() -> str:
     return time.strftime("%Y-%m-%d", time.gmtime())
 
 
+@cache
 def this_machine() -> Machine:
     """Return the machine of this process."""
     system, processor = f"{platform.system()} {platform.machine()}", platform.machine()
