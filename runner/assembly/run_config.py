@@ -1,7 +1,9 @@
 """Checked config of a run, with the objects that the checks built."""
 
 from collections.abc import Mapping
-from dataclasses import dataclass, replace
+from copy import copy
+from dataclasses import dataclass
+from functools import cached_property
 from typing import cast
 
 from runner.assembly.timing import Timing
@@ -30,6 +32,7 @@ from runner.trajectories import Trajectory
 from runner.trajectories.joint_motion import TipOfJoints
 
 # Fields that differ between configs of the same run, or that are new objects in each config.
+_OF_ALL_SEEDS = ("cache_key", "encoder_noise", "model_error", "interpreted")  # computed once
 _OF_ONE_RUN = frozenset({"settings", "composed", "loaded", "timing"})
 
 
@@ -99,8 +102,12 @@ class RunConfig:
 
     def with_seed(self, composed: Composed) -> "RunConfig":
         """Return the same run with the seed of another config, the only difference between the two."""
+        for name in _OF_ALL_SEEDS:
+            getattr(self, name)  # the copy has it, too
+        other = copy(self)
         seed = composed.resolved["seed"]
-        return replace(self, settings=self.settings.model_copy(update={"seed": seed}), composed=composed)
+        vars(other).update(settings=self.settings.model_copy(update={"seed": seed}), composed=composed)
+        return other
 
     @property
     def follows_joints(self) -> bool:
@@ -117,20 +124,20 @@ class RunConfig:
             return self.loops
         return CONTROLLERS.build_for(self.controller, robot, self.follows_joints)
 
-    @property
+    @cached_property
     def cache_key(self) -> tuple[object, ...]:
         """All parts of a run except its seed: numbers, and objects that several configs share; see Memory."""
-        parts = (part for name, part in vars(self).items() if name not in _OF_ONE_RUN)
+        parts = (vars(self)[name] for name in self.__match_args__ if name not in _OF_ONE_RUN)
         times = (part for name, part in vars(self.timing).items() if name != "late")
         several = (*self.loaded, self.timing.late)
         return (*parts, *times, self.settings.repetitions, *(part for each in several for part in each))
 
-    @property
+    @cached_property
     def encoder_noise(self) -> EncoderNoise | None:
         """Noise of the encoders that compiled loops contain; None for encoders of another kind."""
         return cast(EncoderNoise, self.noise) if NOISES.is_compiled(self.noise.kind) else None
 
-    @property
+    @cached_property
     def model_error(self) -> MismatchConfig | None:
         """Factors on the nominal model; None for a mismatch of another kind."""
         return cast(MismatchConfig, self.mismatch) if MISMATCHES.is_compiled(self.mismatch.kind) else None
@@ -140,7 +147,7 @@ class RunConfig:
         """True if each repetition may have another nominal model."""
         return self.model_error is None or self.model_error.varies
 
-    @property
+    @cached_property
     def interpreted(self) -> list[str]:
         """Parts without a compiled form, such as "noise=hysteresis", which are interpreted in each control step."""
         parts = ((NOISES, self.noise), (MISMATCHES, self.mismatch))

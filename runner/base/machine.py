@@ -12,7 +12,7 @@ import platform
 import time
 from collections import Counter
 from collections.abc import Iterable, Mapping
-from dataclasses import asdict, dataclass, fields
+from dataclasses import dataclass, fields
 from functools import cache
 from pathlib import Path
 
@@ -64,7 +64,7 @@ class Machine:
 
     def record(self) -> dict[str, str]:
         """Return the parts by name, as they are stored."""
-        return asdict(self)
+        return {name: getattr(self, name) for name in _NAMES}
 
 
 _NAMES = tuple(field.name for field in fields(Machine))

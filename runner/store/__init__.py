@@ -56,5 +56,6 @@ def __getattr__(name: str) -> Any:
     """Import a name at its first use, so that `latest` needs neither NumPy nor pydantic."""
     for module, names in _MODULES.items():
         if name in names.split():
-            return getattr(import_module(f"runner.store.{module}"), name)
+            globals()[name] = value = getattr(import_module(f"runner.store.{module}"), name)
+            return value
     raise AttributeError(f"module 'runner.store' has no attribute '{name}'")

@@ -145,6 +145,7 @@ def write_shard(outputs: Path, name: str, runs: Sequence[Run | ShardRow]) -> Pat
 
     rows = [_row_of(run) if isinstance(run, Run) else run for run in runs]
     ends = [row.outcome for row in rows]
+    machines = {machine: encode_finite(machine.record()) for machine in {end.machine for end in ends}}
     columns = {
         "run": text_column([end.name for end in ends]),
         "failure": text_column([end.failure for end in ends]),
@@ -154,7 +155,7 @@ def write_shard(outputs: Path, name: str, runs: Sequence[Run | ShardRow]) -> Pat
         "record": text_column([row.record for row in rows]),
         "metrics": text_column([json.dumps([name for name, _ in row.metrics]) for row in rows]),
         "caveats": plain_column(np.array([end.caveats for end in ends], dtype=np.int32)),
-        _MACHINE: text_column([encode_finite(end.machine.record()) for end in ends]),
+        _MACHINE: text_column([machines[end.machine] for end in ends]),
     }
     fields = [pyarrow.field(name, column.type) for name, column in columns.items()]
     measured = list(metric_columns([(row.metrics, row.values) for row in rows]))

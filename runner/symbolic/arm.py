@@ -14,6 +14,7 @@ from runner.robots.model import RobotModel
 from runner.symbolic.vectors import Matrix, Scalar, Vector, product, rotate_tensor, transpose
 
 _ROUNDING = 1e-14  # a right angle's cosine is 6e-17
+_FIXED = (0.0, 1.0, -1.0)  # numbers that are not parameters of code
 _AXES = np.eye(3)
 
 
@@ -194,10 +195,11 @@ def _axis_to_z(joint: Any) -> FloatArray:
 
 def to_scalars(values: Any, number: Callable[[Any], Scalar]) -> Any:
     """Return numbers as nested scalars: 0, 1 and -1 as floats, others converted by `number`."""
-    values = _rounded(values)
-    if isinstance(values, list):
-        return [to_scalars(value, number) for value in values]
-    return _scalar(values, number)
+    return _nested(_rounded(values), number)
+
+
+def _nested(values: Any, number: Callable[[Any], Scalar]) -> Any:
+    return [_nested(value, number) for value in values] if isinstance(values, list) else _scalar(values, number)
 
 
 def to_scalar(value: Any, number: Callable[[Any], Scalar]) -> Scalar:
@@ -214,12 +216,16 @@ def _scalar(value: Any, number: Callable[[Any], Scalar]) -> Scalar:
 
 def constant_of(value: Any) -> float | None:
     """Return 0, 1 or -1 if a number, or an array over runs, is equal to it; else None."""
-    first = float(value[0] if isinstance(value, np.ndarray) else value)
-    return first if first in (0.0, 1.0, -1.0) and np.all(value == first) else None
+    if not isinstance(value, np.ndarray):
+        return float(value) if value in _FIXED else None
+    first = float(value[0])
+    return first if first in _FIXED and np.all(value == first) else None
 
 
 def _rounded(values: Any) -> Any:
     """Return numbers as nested lists; values within rounding of 0, 1 or -1 are replaced by these."""
+    if isinstance(values, float):  # the usual case, and as an array a slow one
+        return next((fixed for fixed in _FIXED if abs(values - fixed) < _ROUNDING), float(values))
     return _near(np.asarray(values, dtype=np.float64)).tolist()
 
 
