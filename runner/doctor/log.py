@@ -1,6 +1,6 @@
 """Examination of a log: its format, its columns with a meaning and a reason each, and what has to be asked."""
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
 
@@ -13,9 +13,10 @@ from runner.doctor.finding import DoctorFinding
 from runner.doctor.log_meanings import BEYOND, UNNAMED, Meaning, meanings_of, time_of, unnamed
 from runner.doctor.log_motion import LogMotion, make_motion
 from runner.doctor.log_names import named, writer_of
-from runner.recordings.columns_map import ColumnsMap, factors_of, read_map
-from runner.recordings.consistency import WITHOUT_GRAVITY, check_consistency
+from runner.recordings.columns_map import ColumnsMap, MappedColumn, factors_of, read_map
+from runner.recordings.consistency import check_consistency
 from runner.recordings.files import read_log
+from runner.recordings.other_meanings import HALF_TURN, WITHOUT_GRAVITY
 from runner.recordings.recording import Recording, to_recording
 from runner.robots.model import RobotModel
 
@@ -112,16 +113,18 @@ def _examine_given(path: Path, model: RobotModel | None, given: Path) -> LogExam
     meanings = [Meaning(name, keys[name], f"said in {given.name}") for name in said.columns]
     time = None if said.time is None else Meaning(said.time.column, {"unit": said.time.unit}, f"said in {given.name}")
     notes = [DoctorFinding("note", "rows", note) for note in table.notes]
-    return judge(LogExamination(table, writer_of(list(table.columns)), time, meanings, notes, None, None), model, said)
+    found = LogExamination(table, writer_of(list(table.columns)), time, meanings, notes, None, None)
+    return judge(found, model, said, propose=False)
 
 
-def judge(found: LogExamination, model: RobotModel, said: ColumnsMap) -> LogExamination:
+def judge(found: LogExamination, model: RobotModel, said: ColumnsMap, propose: bool = True) -> LogExamination:
     """Return an examination with what the signals say of each other, and the motion.
 
     Args:
         found: The columns of a log.
         model: The arm.
         said: Their meaning.
+        propose: Whether torques without gravity and a turned base are taken where the signals show them, not asked for.
 
     Raises:
         RunnerError: if the signals cannot be read, or last less than 2 s.
@@ -136,20 +139,9 @@ def judge(found: LogExamination, model: RobotModel, said: ColumnsMap) -> LogExam
         gaps = f"{len(recording.filled)} gaps of up to {max(recording.filled):.3g} s"
         findings.append(DoctorFinding("note", "rows", gaps, "--fill-gaps fills them"))
     verdict = check_consistency(said.loaded(model), recording)
-    gravity = [question for question in verdict.questions if question.endswith(WITHOUT_GRAVITY)]
-    if gravity and len(verdict.questions) == 1:
-        reason = gravity[0].removesuffix(WITHOUT_GRAVITY).strip()
-        meanings = [
-            replace(one, keys={**one.keys, "holds": "without_gravity"}) if "torque" in one.keys else one
-            for one in found.meanings
-        ]
-        columns = {
-            name: column.model_copy(update={"holds": "without_gravity"}) if column.torque else column
-            for name, column in said.columns.items()
-        }
-        notes = [*found.findings, DoctorFinding("note", "torques", reason, "holds: without_gravity is proposed")]
-        without = said.model_copy(update={"columns": columns})
-        return judge(replace(found, meanings=meanings, findings=notes), model, without)
+    if propose and verdict.questions and all(question.endswith(tuple(_PROPOSED)) for question in verdict.questions):
+        proposal, without = _proposed(found, said, verdict.questions)
+        return judge(proposal, model, without)
     findings += [DoctorFinding("ask", *_split(question)) for question in verdict.questions]
     findings += [DoctorFinding("note", "tip", note) for note in verdict.notes]
     findings += _still(model, recording)
@@ -163,6 +155,37 @@ def judge(found: LogExamination, model: RobotModel, said: ColumnsMap) -> LogExam
     motion = None if open_positions else make_motion(model, recording)
     findings += [] if motion is None else [DoctorFinding("note", "motion", note) for note in motion.notes]
     return replace(found, findings=[*found.findings, *findings], recording=recording, motion=motion)
+
+
+def _without_gravity(column: MappedColumn) -> Mapping[str, object]:
+    return {"holds": "without_gravity"} if column.torque else {}
+
+
+def _half_turn(column: MappedColumn) -> Mapping[str, object]:
+    return {"sign": -column.sign} if column.tip in ("x", "y") else {}
+
+
+_PROPOSED: Mapping[str, tuple[str, str, Callable[[MappedColumn], Mapping[str, object]]]] = {
+    WITHOUT_GRAVITY: ("torques", "holds: without_gravity is proposed", _without_gravity),
+    HALF_TURN: ("tip", "sign: -1 is proposed for x and y", _half_turn),
+}
+
+
+def _proposed(found: LogExamination, said: ColumnsMap, questions: Sequence[str]) -> tuple[LogExamination, ColumnsMap]:
+    """Return an examination and a map with the answers that the evidence gives."""
+    for question in questions:
+        ending = next(each for each in _PROPOSED if question.endswith(each))
+        place, text, change = _PROPOSED[ending]
+        changes = {name: change(column) for name, column in said.columns.items()}
+        said = said.model_copy(
+            update={"columns": {name: one.model_copy(update=changes[name]) for name, one in said.columns.items()}}
+        )
+        found = replace(
+            found,
+            meanings=[replace(one, keys={**one.keys, **changes.get(one.column, {})}) for one in found.meanings],
+            findings=[*found.findings, DoctorFinding("note", place, question.removesuffix(ending).strip(), text)],
+        )
+    return found, said
 
 
 _EVIDENCE = {"torque": "the torques", "tip": "the tip", "reference": "the commanded positions"}

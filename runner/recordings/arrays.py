@@ -20,7 +20,8 @@ _WIDEST = 1000  # columns of an array
 def read_arrays(path: Path, archive: zipfile.ZipFile) -> NumericTable:
     """Return the columns of an opened zip file of arrays: NAME of a vector, NAME_0, NAME_1 and so on of a matrix.
 
-    A matrix may have its rows along either axis. Arrays of objects, which would have to be unpickled, are not read.
+    A matrix of one column is a vector, and another one may have its rows along either axis. Arrays of objects, which
+    would have to be unpickled, are not read.
 
     Raises:
         TableError: if no array is a signal, or one is damaged.
@@ -49,8 +50,8 @@ def read_arrays(path: Path, archive: zipfile.ZipFile) -> NumericTable:
     for name, found in arrays.items():
         if max(found.shape) != rows:
             others[name] = ""
-        elif found.ndim == 1:
-            columns[name] = found.astype(np.float64)
+        elif min(found.shape) == 1 or found.ndim == 1:
+            columns[name] = found.astype(np.float64).ravel()
         else:
             matrix = found.astype(np.float64) if len(found) == rows else found.T.astype(np.float64)
             columns |= {f"{name}_{place}": matrix[:, place] for place in range(matrix.shape[1])}

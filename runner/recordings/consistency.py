@@ -13,9 +13,8 @@ the constant may be wrong. Another meaning of a column is asked for if it lowers
 clearly: errors of masses, friction and payload do not.
 """
 
-from collections.abc import Callable, Iterator, Sequence
-from dataclasses import dataclass, replace
-from itertools import combinations
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
 
 import numpy as np
 import pinocchio as pin
@@ -23,6 +22,7 @@ from scipy.optimize import nnls
 
 from runner.base.arrays import FloatArray
 from runner.recordings.columns_map import Signal
+from runner.recordings.other_meanings import MOVES, NO_GRAVITY, Motion, OtherMeaning, other_meanings, scaled
 from runner.recordings.recording import Recording
 from runner.recordings.smoothing import cutoff, derivative, evenly, low_pass
 from runner.robots.model import RobotModel
@@ -32,12 +32,9 @@ _ROWS = 300  # at which the equations are evaluated
 _CLEARLY = 0.5  # of the sum of logarithms: another meaning explains 40 % more
 _LEAST = {"torque": 0.15, "tip": 0.03, "reference": 0.1}  # r above which a meaning is doubted at all
 _NOISE = {"torque": 0.05, "tip": 0.005, "reference": 0.05}  # of a signal's size, below which r tells nothing
-_DEGREE = np.pi / 180.0
 _SLOWEST_ROWS = 0.5  # s
 _TOO_FAST = 3.0  # times the limit of a joint's speed, in half of all rows
 _ZERO = 1e-9  # N m: a torque that is smaller in all rows counts as zero
-_MOVES = 1e-4  # rad or m: what moves less tells nothing
-_LENGTHS = ((1e-3, "fits if it is in mm", "unit: mm"), (1e3, "fits if it is in m", "unit: m"))
 _OFFSET = 1e-3  # m, of the tip, that is reported
 _NO_TIP = 0.25  # r of a tip: a delay of 0.1 s leaves less
 _WORSE = 0.1  # of a torque
@@ -46,10 +43,6 @@ _NEAR = 0.1  # of the range of a torque
 _AT_REST = 0.01  # of the largest speed of a joint
 _DOUBTED, _HALVED = 0.1, 0.5  # r from which on the unit of a torque is doubted, and how much less another one leaves
 _OTHER_SCALE = 3.0  # times the model's torque, from which on a unit is doubted
-
-_NO_GRAVITY = "holds: without_gravity"
-WITHOUT_GRAVITY = f"Say {_NO_GRAVITY}."
-"""End of the question whether gravity is in the torques."""
 
 
 @dataclass(frozen=True)
@@ -67,30 +60,6 @@ class LogVerdict:
     confirmed: dict[str, tuple[str, ...]]
 
 
-@dataclass(frozen=True)
-class _Motion:
-    """Even rows of a log: positions with derivatives, and what they are compared with, NaN where not recorded."""
-
-    q: FloatArray
-    dq: FloatArray
-    ddq: FloatArray
-    torque: FloatArray
-    tip: FloatArray
-    reference: FloatArray
-
-
-_Change = Callable[[_Motion], _Motion]
-
-
-@dataclass(frozen=True)
-class _Meaning:
-    """Another meaning of columns: its words, the line that settles it, and the motion that it makes."""
-
-    words: str
-    line: str
-    change: _Change
-
-
 def check_consistency(model: RobotModel, recording: Recording) -> LogVerdict:
     """Return the contradictions between the signals of a log.
 
@@ -103,12 +72,12 @@ def check_consistency(model: RobotModel, recording: Recording) -> LogVerdict:
     questions = [*_empty_torques(recording), *_slow_rows(recording)]
     if questions or q is None:
         return LogVerdict(tuple(questions), (), {})
-    if not (np.ptp(q, axis=0) > _MOVES).any():
-        return LogVerdict((f"the arm stands still: no joint moves by {_MOVES:g} rad. Use a log of a motion.",), (), {})
+    if not (np.ptp(q, axis=0) > MOVES).any():
+        return LogVerdict((f"the arm stands still: no joint moves by {MOVES:g} rad. Use a log of a motion.",), (), {})
     motion = _motion(recording, joints, q)
     judge = _Judge(model, recording)
     before = judge.lacks(motion)
-    chosen, changed = _best(judge, motion, before, list(_meanings(model, recording, motion)))
+    chosen, changed = _best(judge, motion, before, list(other_meanings(model, recording, motion)))
     if chosen and (clipped := list(_clipped(model, recording, q, before))):
         return LogVerdict(tuple(clipped), (), {})
     questions += [_question(meaning, joints, before, judge.lacks(changed)) for meaning in chosen]
@@ -143,7 +112,7 @@ def _clipped(
 ) -> Iterator[str]:
     """Yield a question for each torque that the motion does not explain, and that stays at a limit while it moves."""
     for (kind, place), lack in lacks.items():
-        if kind != "torque" or lack < _LEAST["torque"] or np.ptp(q[:, place]) <= _MOVES:
+        if kind != "torque" or lack < _LEAST["torque"] or np.ptp(q[:, place]) <= MOVES:
             continue
         signal = Signal("torque", model.joint_names[place])
         speed = np.abs(np.gradient(q[:, place], recording.t))
@@ -182,7 +151,7 @@ def _too_fast(model: RobotModel, recording: Recording, q: FloatArray) -> Iterato
         )
 
 
-def _motion(recording: Recording, joints: Sequence[str], q: FloatArray) -> _Motion:
+def _motion(recording: Recording, joints: Sequence[str], q: FloatArray) -> Motion:
     every = max(1, len(recording.t) // _MOST)
     period, t = every * recording.period, recording.t[::every]
     times = np.minimum(period * np.arange(int(t[-1] / period + 1e-6) + 1), t[-1])
@@ -201,7 +170,7 @@ def _motion(recording: Recording, joints: Sequence[str], q: FloatArray) -> _Moti
                 columns[:, place] = low_pass(even, period, cutoff(period))[rows]
         return columns
 
-    return _Motion(
+    return Motion(
         smooth[rows], dq[rows], derivative(dq, period)[rows],
         others("torque", joints), others("tip", ("x", "y", "z")), others("reference", joints),
     )  # fmt: skip
@@ -219,12 +188,12 @@ class _Judge:
         self._tip = model.tip_frame
         self.currents = [model.joint_names.index(signal.of) for signal in recording.currents]
 
-    def rigid(self, motion: _Motion) -> FloatArray:
+    def rigid(self, motion: Motion) -> FloatArray:
         """Return the torques of the model, shape (N, nq)."""
         rows = zip(motion.q, motion.dq, motion.ddq, strict=True)
         return np.array([pin.rnea(self._model, self._data, *row) for row in rows])
 
-    def lacks(self, motion: _Motion) -> dict[tuple[str, int], float]:
+    def lacks(self, motion: Motion) -> dict[tuple[str, int], float]:
         """Return r of each signal that is recorded, by its kind and joint."""
         found: dict[tuple[str, int], float] = {}
         recorded = np.flatnonzero(~np.isnan(motion.torque[0]))
@@ -243,11 +212,11 @@ class _Judge:
             found["tip", 0] = float(np.linalg.norm(rest) / max(float(np.linalg.norm(swing)), _ZERO))
         for joint in np.flatnonzero(~np.isnan(motion.reference[0])).tolist():
             command, own = (values[:, joint] - values[:, joint].mean() for values in (motion.reference, motion.q))
-            if np.ptp(command) > _MOVES:
+            if np.ptp(command) > MOVES:
                 found["reference", joint] = float(np.linalg.norm(own - command) / np.linalg.norm(command))
         return found
 
-    def tip_rest(self, motion: _Motion) -> tuple[FloatArray, FloatArray]:
+    def tip_rest(self, motion: Motion) -> tuple[FloatArray, FloatArray]:
         """Return the residual of the tip, shape (3 N,), and its offsets in the frame of the tip and in the base."""
         axes = np.flatnonzero(~np.isnan(motion.tip[0]))
         blocks, apart = [], []
@@ -266,10 +235,10 @@ def _total(lacks: dict[tuple[str, int], float]) -> float:
 
 
 def _best(
-    judge: _Judge, motion: _Motion, before: dict[tuple[str, int], float], meanings: Sequence[_Meaning]
-) -> tuple[list[_Meaning], _Motion]:
+    judge: _Judge, motion: Motion, before: dict[tuple[str, int], float], meanings: Sequence[OtherMeaning]
+) -> tuple[list[OtherMeaning], Motion]:
     """Return the meanings that together fit clearly better, and the motion that they make."""
-    chosen: list[_Meaning] = []
+    chosen: list[OtherMeaning] = []
     total = _total(before)
     while any(lack > _LEAST[kind] for (kind, _), lack in before.items()) and len(chosen) < motion.q.shape[1]:
         tried = [
@@ -287,89 +256,16 @@ def _best(
     return chosen, motion
 
 
-def _spoils(meaning: _Meaning, before: dict[tuple[str, int], float], after: dict[tuple[str, int], float]) -> bool:
+def _spoils(meaning: OtherMeaning, before: dict[tuple[str, int], float], after: dict[tuple[str, int], float]) -> bool:
     """Return whether a meaning of all torques makes one of them fit worse: that of another one is wrong then."""
-    return meaning.line == _NO_GRAVITY and any(after[key] > lack + _WORSE for key, lack in before.items())
-
-
-def _meanings(model: RobotModel, recording: Recording, motion: _Motion) -> Iterator[_Meaning]:
-    joints = model.joint_names
-    columns = {signal: f"columns.{name}" for signal, name in recording.columns.items()}
-    torques = [place for place in range(len(joints)) if not np.isnan(motion.torque[0, place])]
-    moving = [place for place in range(len(joints)) if np.ptp(motion.q[:, place]) > _MOVES]
-    for place in moving:
-        name = columns[Signal("position", joints[place])]
-        sign = -1 if recording.units[name.removeprefix("columns.")].factor > 0.0 else 1
-        yield _Meaning(f"{name}: fits with the opposite sign", f"sign: {sign}", _scaled(place, -1.0))
-        for factor, unit in ((_DEGREE, "deg"), (1.0 / _DEGREE, "rad")):
-            yield _Meaning(f"{name}: fits if it is in {unit}", f"unit: {unit}", _scaled(place, factor))
-    for factor, unit in ((_DEGREE, "deg"), (1.0 / _DEGREE, "rad")):
-        whole = f"columns of positions: fit if they are in {unit}"
-        yield _Meaning(whole, f"unit: {unit}", _all_scaled(factor))
-    for one, other in combinations(range(len(joints)), 2):
-        pair = [columns[Signal("position", joints[place])] for place in (one, other)]
-        yield _Meaning(
-            f"{pair[0]} and {pair[1]}: fit if they are exchanged",
-            "each the joint of the other",
-            _exchanged(one, other, "q"),
-        )
-    for place in np.flatnonzero(~np.isnan(motion.tip[0])).tolist():
-        name = columns[Signal("tip", "xyz"[place])]
-        for factor, words, line in ((-1.0, "fits with the opposite sign", "sign: -1"), *_LENGTHS):
-            yield _Meaning(f"{name}: {words}", line, _scaled(place, factor, "tip"))
-    for place in torques:
-        name = columns[Signal("torque", joints[place])]
-        sign = -1 if recording.units[name.removeprefix("columns.")].factor > 0.0 else 1
-        yield _Meaning(f"{name}: fits with the opposite sign", f"sign: {sign}", _scaled(place, -1.0, "torque"))
-    for one, other in combinations(torques, 2):
-        pair = [columns[Signal("torque", joints[place])] for place in (one, other)]
-        yield _Meaning(
-            f"{pair[0]} and {pair[1]}: fit if they are exchanged",
-            "each the joint of the other",
-            _exchanged(one, other, "torque"),
-        )
-    if torques and recording.holds != "without_gravity":
-        whole = "columns of torques: fit if gravity is not in them"
-        yield _Meaning(whole, _NO_GRAVITY, _gravity_added(model))
-
-
-def _gravity_added(model: RobotModel) -> _Change:
-    def change(motion: _Motion) -> _Motion:
-        return replace(motion, torque=motion.torque + np.array([model.gravity_torque(q) for q in motion.q]))
-
-    return change
-
-
-def _scaled(place: int, factor: float, what: str = "q") -> _Change:
-    def change(motion: _Motion) -> _Motion:
-        factors = np.ones(getattr(motion, what).shape[1])
-        factors[place] = factor
-        return _times(motion, factors) if what == "q" else replace(motion, **{what: getattr(motion, what) * factors})
-
-    return change
-
-
-def _all_scaled(factor: float) -> _Change:
-    return lambda motion: _times(motion, np.full(motion.q.shape[1], factor))
-
-
-def _times(motion: _Motion, factors: FloatArray) -> _Motion:
-    return replace(motion, q=motion.q * factors, dq=motion.dq * factors, ddq=motion.ddq * factors)
-
-
-def _exchanged(one: int, other: int, what: str) -> _Change:
-    def change(motion: _Motion) -> _Motion:
-        order = np.arange(motion.q.shape[1])
-        order[[one, other]] = other, one
-        if what == "torque":
-            return replace(motion, torque=motion.torque[:, order])
-        return replace(motion, q=motion.q[:, order], dq=motion.dq[:, order], ddq=motion.ddq[:, order])
-
-    return change
+    return meaning.line == NO_GRAVITY and any(after[key] > lack + _WORSE for key, lack in before.items())
 
 
 def _question(
-    meaning: _Meaning, joints: Sequence[str], before: dict[tuple[str, int], float], after: dict[tuple[str, int], float]
+    meaning: OtherMeaning,
+    joints: Sequence[str],
+    before: dict[tuple[str, int], float],
+    after: dict[tuple[str, int], float],
 ) -> str:
     """Return a question with the two numbers that decide: what is unexplained before and after."""
 
@@ -386,7 +282,7 @@ def _question(
     )
 
 
-def _tip_offset(model: RobotModel, judge: _Judge, motion: _Motion) -> Iterator[str]:
+def _tip_offset(model: RobotModel, judge: _Judge, motion: Motion) -> Iterator[str]:
     if np.isnan(motion.tip[0]).all():
         return
     rest, offsets = judge.tip_rest(motion)
@@ -401,14 +297,18 @@ def _tip_offset(model: RobotModel, judge: _Judge, motion: _Motion) -> Iterator[s
         )
 
 
-def _scales(judge: _Judge, motion: _Motion, recording: Recording, joints: Sequence[str]) -> Iterator[str]:
+def _scales(judge: _Judge, motion: Motion, recording: Recording, joints: Sequence[str]) -> Iterator[str]:
     """Yield a question for each torque that fits the model in another unit only."""
     rigid = judge.rigid(motion)
     for joint in np.flatnonzero(~np.isnan(motion.torque[0])).tolist():
         y, model = motion.torque[:, joint], rigid[:, joint]
         scale = float(y @ model) / max(float(model @ model), _ZERO)
+        friction = [motion.dq[:, joint], np.sign(motion.dq[:, joint])]
+        inverse = float(np.linalg.lstsq(np.column_stack([y, *friction]), model)[0][0])  # without noise in the model
         lack, then = _left_over(motion, joint, y - model), _left_over(motion, joint, y, model)
-        if scale <= 0.0 or 1.0 / _OTHER_SCALE < scale < _OTHER_SCALE or lack < _DOUBTED or then >= _HALVED * lack:
+        low = scale < 1.0 / _OTHER_SCALE and inverse > _OTHER_SCALE
+        high = scale > _OTHER_SCALE and inverse < 1.0 / _OTHER_SCALE
+        if scale <= 0.0 or not (low or high) or lack < _DOUBTED or then >= _HALVED * lack:
             continue
         name = recording.columns[Signal("torque", joints[joint])]
         settles = 'its unit; of a per cent say unit: "%" and scale'
@@ -420,17 +320,17 @@ def _scales(judge: _Judge, motion: _Motion, recording: Recording, joints: Sequen
         )
 
 
-def _left_over(motion: _Motion, joint: int, rest: FloatArray, *columns: FloatArray) -> float:
+def _left_over(motion: Motion, joint: int, rest: FloatArray, *columns: FloatArray) -> float:
     """Return the share of a recorded torque that columns, friction and a rotor do not explain of the rest of it."""
     speed, size = motion.dq[:, joint], max(float(np.linalg.norm(motion.torque[:, joint])), _ZERO)
     return float(nnls(np.column_stack([*columns, motion.ddq[:, joint], speed, np.sign(speed)]), rest)[1]) / size
 
 
 def _confirmed(
-    judge: _Judge, motion: _Motion, before: dict[tuple[str, int], float], joints: Sequence[str]
+    judge: _Judge, motion: Motion, before: dict[tuple[str, int], float], joints: Sequence[str]
 ) -> Iterator[tuple[str, tuple[str, ...]]]:
     """Yield what would contradict another sign of each joint."""
     for place, joint in enumerate(joints):
-        turned = judge.lacks(_scaled(place, -1.0)(motion)) if before else {}
+        turned = judge.lacks(scaled(place, -1.0)(motion)) if before else {}
         kinds = dict.fromkeys(kind for (kind, at), lack in turned.items() if lack > before[kind, at] + _LEAST[kind])
         yield joint, tuple(kinds)

@@ -28,6 +28,13 @@ def test_vectors_and_matrices_are_columns_whichever_axis_has_the_rows(tmp_path):
     assert found.columns["grip"].sum() == (T > 1.0).sum()
 
 
+def test_a_matrix_of_one_column_is_a_vector(tmp_path):
+    """The times of panda-python's log are arrays of one number each."""
+    found = saved(tmp_path, time=[np.array([1000.0 * t]) for t in T], q=list(Q))
+    assert list(found.columns) == ["time", "q_0", "q_1"]
+    np.testing.assert_array_equal(found.columns["time"], 1000.0 * T)
+
+
 def test_what_is_no_signal_is_named_and_not_unpickled(tmp_path):
     odd = {"gains": np.ones(2), "names": np.array(["a", "b"]), "rate": np.array(100.0), "notes": np.array([{}, None])}
     found = saved(tmp_path, t=T, q=Q, images=np.zeros((len(T), 2, 2)), **odd)

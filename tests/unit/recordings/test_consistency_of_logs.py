@@ -10,6 +10,7 @@ from runner.assembly.validation import validate
 from runner.config.compose.compose import compose
 from runner.recordings.columns_map import Factor, Signal
 from runner.recordings.consistency import check_consistency
+from runner.recordings.other_meanings import HALF_TURN
 from runner.recordings.recording import Recording
 
 T = np.arange(0.0, 8.0, 0.008)
@@ -166,6 +167,33 @@ def test_a_rigid_offset_of_the_tip_is_geometry(arm):
     }))  # fmt: skip
     assert verdict.questions == ()
     assert verdict.notes[0].startswith("geometry differs by 10 mm: ")
+
+
+def test_a_base_that_is_turned_by_half_a_turn_is_told_by_the_tip(arm):
+    x, y = Signal("tip", "x"), Signal("tip", "y")
+    (question,) = check_consistency(
+        arm, made(arm, kinds=("tip",), change=lambda s: {**s, x: -s[x], y: -s[y]})
+    ).questions
+    assert "fit with opposite signs, as in a base that is turned by half a turn about z" in question
+    assert question.endswith(HALF_TURN)
+
+
+def test_the_unit_that_a_column_has_is_not_proposed(arm):
+    found = made(arm, kinds=("tip",), change=lambda s: {**s, Signal("tip", "z"): s[Signal("tip", "z")][::-1].copy()})
+    questions = " ".join(check_consistency(arm, found).questions)
+    assert questions
+    assert "if it is in m;" not in questions
+
+
+def test_noise_of_the_positions_is_not_taken_for_another_unit_of_torques(arm):
+    """Rows of two moments, as ur-rtde writes them, spoil accelerations, but not torques."""
+    rng = np.random.default_rng(4)
+
+    def torn(signals):
+        late = rng.random(len(T)) < 0.05
+        return {s: np.where(late, np.roll(v, -2), v) if s.kind == "position" else v for s, v in signals.items()}
+
+    assert not [q for q in check_consistency(arm, made(arm, change=torn)).questions if "times the model's" in q]
 
 
 def test_an_arm_that_stands_still_is_refused(arm):
