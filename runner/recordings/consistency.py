@@ -22,7 +22,7 @@ from scipy.optimize import nnls
 
 from runner.base.arrays import FloatArray
 from runner.recordings.columns_map import Signal
-from runner.recordings.other_meanings import MOVES, NO_GRAVITY, Motion, OtherMeaning, other_meanings, scaled
+from runner.recordings.other_meanings import MOVES, NO_GRAVITY, EvenMotion, OtherMeaning, other_meanings, scaled
 from runner.recordings.recording import Recording
 from runner.recordings.smoothing import cutoff, derivative, evenly, low_pass
 from runner.robots.model import RobotModel
@@ -151,7 +151,7 @@ def _too_fast(model: RobotModel, recording: Recording, q: FloatArray) -> Iterato
         )
 
 
-def _motion(recording: Recording, joints: Sequence[str], q: FloatArray) -> Motion:
+def _motion(recording: Recording, joints: Sequence[str], q: FloatArray) -> EvenMotion:
     every = max(1, len(recording.t) // _MOST)
     period, t = every * recording.period, recording.t[::every]
     times = np.minimum(period * np.arange(int(t[-1] / period + 1e-6) + 1), t[-1])
@@ -170,7 +170,7 @@ def _motion(recording: Recording, joints: Sequence[str], q: FloatArray) -> Motio
                 columns[:, place] = low_pass(even, period, cutoff(period))[rows]
         return columns
 
-    return Motion(
+    return EvenMotion(
         smooth[rows], dq[rows], derivative(dq, period)[rows],
         others("torque", joints), others("tip", ("x", "y", "z")), others("reference", joints),
     )  # fmt: skip
@@ -188,12 +188,12 @@ class _Judge:
         self._tip = model.tip_frame
         self.currents = [model.joint_names.index(signal.of) for signal in recording.currents]
 
-    def rigid(self, motion: Motion) -> FloatArray:
+    def rigid(self, motion: EvenMotion) -> FloatArray:
         """Return the torques of the model, shape (N, nq)."""
         rows = zip(motion.q, motion.dq, motion.ddq, strict=True)
         return np.array([pin.rnea(self._model, self._data, *row) for row in rows])
 
-    def lacks(self, motion: Motion) -> dict[tuple[str, int], float]:
+    def lacks(self, motion: EvenMotion) -> dict[tuple[str, int], float]:
         """Return r of each signal that is recorded, by its kind and joint."""
         found: dict[tuple[str, int], float] = {}
         recorded = np.flatnonzero(~np.isnan(motion.torque[0]))
@@ -216,7 +216,7 @@ class _Judge:
                 found["reference", joint] = float(np.linalg.norm(own - command) / np.linalg.norm(command))
         return found
 
-    def tip_rest(self, motion: Motion) -> tuple[FloatArray, FloatArray]:
+    def tip_rest(self, motion: EvenMotion) -> tuple[FloatArray, FloatArray]:
         """Return the residual of the tip, shape (3 N,), and its offsets in the frame of the tip and in the base."""
         axes = np.flatnonzero(~np.isnan(motion.tip[0]))
         blocks, apart = [], []
@@ -235,8 +235,8 @@ def _total(lacks: dict[tuple[str, int], float]) -> float:
 
 
 def _best(
-    judge: _Judge, motion: Motion, before: dict[tuple[str, int], float], meanings: Sequence[OtherMeaning]
-) -> tuple[list[OtherMeaning], Motion]:
+    judge: _Judge, motion: EvenMotion, before: dict[tuple[str, int], float], meanings: Sequence[OtherMeaning]
+) -> tuple[list[OtherMeaning], EvenMotion]:
     """Return the meanings that together fit clearly better, and the motion that they make."""
     chosen: list[OtherMeaning] = []
     total = _total(before)
@@ -282,7 +282,7 @@ def _question(
     )
 
 
-def _tip_offset(model: RobotModel, judge: _Judge, motion: Motion) -> Iterator[str]:
+def _tip_offset(model: RobotModel, judge: _Judge, motion: EvenMotion) -> Iterator[str]:
     if np.isnan(motion.tip[0]).all():
         return
     rest, offsets = judge.tip_rest(motion)
@@ -297,7 +297,7 @@ def _tip_offset(model: RobotModel, judge: _Judge, motion: Motion) -> Iterator[st
         )
 
 
-def _scales(judge: _Judge, motion: Motion, recording: Recording, joints: Sequence[str]) -> Iterator[str]:
+def _scales(judge: _Judge, motion: EvenMotion, recording: Recording, joints: Sequence[str]) -> Iterator[str]:
     """Yield a question for each torque that fits the model in another unit only."""
     rigid = judge.rigid(motion)
     for joint in np.flatnonzero(~np.isnan(motion.torque[0])).tolist():
@@ -320,14 +320,14 @@ def _scales(judge: _Judge, motion: Motion, recording: Recording, joints: Sequenc
         )
 
 
-def _left_over(motion: Motion, joint: int, rest: FloatArray, *columns: FloatArray) -> float:
+def _left_over(motion: EvenMotion, joint: int, rest: FloatArray, *columns: FloatArray) -> float:
     """Return the share of a recorded torque that columns, friction and a rotor do not explain of the rest of it."""
     speed, size = motion.dq[:, joint], max(float(np.linalg.norm(motion.torque[:, joint])), _ZERO)
     return float(nnls(np.column_stack([*columns, motion.ddq[:, joint], speed, np.sign(speed)]), rest)[1]) / size
 
 
 def _confirmed(
-    judge: _Judge, motion: Motion, before: dict[tuple[str, int], float], joints: Sequence[str]
+    judge: _Judge, motion: EvenMotion, before: dict[tuple[str, int], float], joints: Sequence[str]
 ) -> Iterator[tuple[str, tuple[str, ...]]]:
     """Yield what would contradict another sign of each joint."""
     for place, joint in enumerate(joints):

@@ -26,7 +26,7 @@ MOVES = 1e-4
 
 
 @dataclass(frozen=True)
-class Motion:
+class EvenMotion:
     """Even rows of a log: positions with derivatives, and what they are compared with, NaN where not recorded."""
 
     q: FloatArray
@@ -37,7 +37,7 @@ class Motion:
     reference: FloatArray
 
 
-Change = Callable[[Motion], Motion]
+Change = Callable[[EvenMotion], EvenMotion]
 """Function of a motion that returns it with another meaning of its columns."""
 
 
@@ -50,7 +50,7 @@ class OtherMeaning:
     change: Change
 
 
-def other_meanings(model: RobotModel, recording: Recording, motion: Motion) -> Iterator[OtherMeaning]:
+def other_meanings(model: RobotModel, recording: Recording, motion: EvenMotion) -> Iterator[OtherMeaning]:
     """Yield the meanings that columns may have instead of those that they are said to have.
 
     Args:
@@ -109,7 +109,7 @@ def _others(recording: Recording, column: str, si: str, units: Sequence[str]) ->
 
 
 def _gravity_added(model: RobotModel) -> Change:
-    def change(motion: Motion) -> Motion:
+    def change(motion: EvenMotion) -> EvenMotion:
         return replace(motion, torque=motion.torque + np.array([model.gravity_torque(q) for q in motion.q]))
 
     return change
@@ -124,7 +124,7 @@ def scaled(place: int, factor: float, what: str = "q") -> Change:
         what: q, tip or torque.
     """
 
-    def change(motion: Motion) -> Motion:
+    def change(motion: EvenMotion) -> EvenMotion:
         factors = np.ones(getattr(motion, what).shape[1])
         factors[place] = factor
         return _times(motion, factors) if what == "q" else replace(motion, **{what: getattr(motion, what) * factors})
@@ -136,12 +136,12 @@ def _all_scaled(factor: float) -> Change:
     return lambda motion: _times(motion, np.full(motion.q.shape[1], factor))
 
 
-def _times(motion: Motion, factors: FloatArray) -> Motion:
+def _times(motion: EvenMotion, factors: FloatArray) -> EvenMotion:
     return replace(motion, q=motion.q * factors, dq=motion.dq * factors, ddq=motion.ddq * factors)
 
 
 def _exchanged(one: int, other: int, what: str) -> Change:
-    def change(motion: Motion) -> Motion:
+    def change(motion: EvenMotion) -> EvenMotion:
         order = np.arange(motion.q.shape[1])
         order[[one, other]] = other, one
         if what == "torque":
