@@ -1,8 +1,8 @@
 """Tables: columns of numbers in text and Parquet files, recognised by content.
 
-In text, commas, semicolons, tabs or blanks separate the cells. Lines of comments may stand above the names of the
-columns, and a line of units below them. If commas do not separate cells, they may be decimal points. Dates with times,
-as in ISO 8601, count in s since 1970.
+In text, commas, semicolons, tabs or blanks separate the cells. A cell may hold a list of numbers, and a row one joint
+at a time. Lines of comments may stand above the names of the columns, and a line of units below them. If commas do not
+separate cells, they may be decimal points. Dates with times, as in ISO 8601, count in s since 1970.
 """
 
 import csv
@@ -31,6 +31,7 @@ from runner.base.limits import (
     Limit,
 )
 from runner.base.parquet import PARQUET, number_columns, open_columns
+from runner.base.row_forms import by_joint, coded_rows, flat_names, flat_rows, joint_column, list_widths, with_points
 from runner.base.sanitize import few, quoted
 
 MISSING = ("", "nan", "na", "null", "none", "-nan", "nan(ind)", "-nan(ind)")
@@ -106,6 +107,15 @@ class NumericTable:
             notes=(*self.notes, f"{np.sum(~kept):,} rows {why} are left out"),
         )
 
+    def only(self, names: Sequence[str]) -> "NumericTable":
+        """Return some columns.
+
+        Raises:
+            RunnerError: if a column is not there.
+        """
+        self.require(names)
+        return replace(self, columns={name: self.columns[name] for name in names})
+
     def require(self, names: Sequence[str]) -> None:
         """Check that the columns are there.
 
@@ -159,9 +169,7 @@ def read_table(path: Path, wanted: Wanted | None = None, limit: Limit = RECORDIN
         columns, others = number_columns(read, {})
         table = NumericTable(path, "Parquet", columns, others=others)
         chosen = wanted(read.column_names) if callable(wanted) else wanted
-        if chosen is not None:
-            table.require(chosen)
-        return table if chosen is None else replace(table, columns={name: columns[name] for name in chosen})
+        return table if chosen is None else table.only(chosen)
     if b"\0" in head:
         raise TableError(path, "is neither text nor Parquet")
     with path.open(encoding="utf-8-sig", errors="replace", newline="") as text:
@@ -183,24 +191,57 @@ def read_text_table(path: Path, file: TextIO, wanted: Wanted | None = None, form
         ExcessError: if it is too large.
     """
     layout = _layout(path, file)
-    file.seek(0)
-    names = list(layout.names)
-    wanted = wanted(names) if callable(wanted) else wanted
-    twice = [name for name in dict.fromkeys(names) if names.count(name) > 1 and (wanted is None or name in wanted)]
-    if twice and wanted is not None:
+    rows, names, sample, every = _open(path, file, layout)
+    separated = {"": "blanks", "\t": "tabs", ",": "commas", ";": "semicolons"}[layout.separator]
+    form = f"{form}, cells separated by {separated}"
+    chosen = wanted(names) if callable(wanted) else wanted
+    joint = joint_column(names)
+    if joint is not None and (chosen is None or not set(chosen) <= set(names)):
+        long = _read_long(path, rows, names, sample, every, joint, strict=chosen is not None)
+        if long is not None:
+            table = NumericTable(path, f"{form}, a row for each joint", long[0], lines=long[1], notes=long[2])
+            return table if wanted is None else table.only(wanted(list(long[0])) if callable(wanted) else wanted)
+        rows, names, sample, every = _open(path, file, layout)
+    twice = [name for name in dict.fromkeys(names) if names.count(name) > 1 and (chosen is None or name in chosen)]
+    if twice and chosen is not None:
         raise TableError(path, f"has the column {quoted(twice[0])} more than once")
-    rows = _Rows(file, layout)
-    sample = list(_first(rows, _SAMPLE))
     numeric = [place for place, name in enumerate(names) if name not in twice and _has_numbers(sample, place)]
     others = {name: _text(sample, place) for place, name in enumerate(names) if place not in numeric}
-    if wanted is not None:
-        NumericTable(path, form, dict.fromkeys(names, np.empty(0))).require(wanted)
-        numeric = [names.index(name) for name in wanted]
-    numbers, lines, notes = _Numbers(path, names, numeric, strict=wanted is not None).read(chain(sample, rows), rows)
-    separated = {"": "blanks", "\t": "tabs", ",": "commas", ";": "semicolons"}[layout.separator]
+    if chosen is not None:
+        NumericTable(path, form, dict.fromkeys(names, np.empty(0))).require(chosen)
+        numeric = [names.index(name) for name in chosen]
+    numbers, lines, notes = _Numbers(path, names, numeric, strict=chosen is not None).read(every, rows)
     units = {name: unit for name, unit in zip(names, layout.units, strict=False) if unit}
     columns = {names[place]: numbers[:, index] for index, place in enumerate(numeric)}
-    return NumericTable(path, f"{form}, cells separated by {separated}", columns, units, lines, others, notes)
+    return NumericTable(path, form, columns, units, lines, others, notes)
+
+
+def _open(
+    path: Path, file: TextIO, layout: "_Layout"
+) -> tuple["_Rows", list[str], list[tuple[int, list[str]]], Iterator[tuple[int, list[str]]]]:
+    """Return the rows of a file from its start, names of the columns, the first rows, and all rows, without lists."""
+    file.seek(0)
+    rows = _Rows(file, layout)
+    sample = list(_first(rows, _SAMPLE))
+    widths = list_widths(sample, layout.names)
+    if not widths:
+        return rows, list(layout.names), sample, chain(sample, rows)
+    flat = list(flat_rows(path, sample, layout.names, widths))
+    rest = flat_rows(path, rows, layout.names, widths)
+    return rows, flat_names(layout.names, widths), flat, chain(flat, rest)
+
+
+def _read_long(
+    path: Path, rows: "_Rows", names: list[str], sample: Sequence[tuple[int, list[str]]],
+    every: Iterator[tuple[int, list[str]]], joint: int, strict: bool,
+) -> tuple[dict[str, FloatArray], NDArray[np.int64], tuple[str, ...]] | None:  # fmt: skip
+    """Return a table with a row for each joint as one with a row for each time; None if it is another one."""
+    places = [place for place in range(len(names)) if place == joint or _has_numbers(sample, place)]
+    codes: dict[str, int] = {}
+    numbers, lines, notes = _Numbers(path, names, places, strict).read(coded_rows(every, joint, codes), rows)
+    labels = [f"{names[joint]}{text}" if text.isdigit() else text for text in codes]
+    found = by_joint(path, [names[place] for place in places], numbers, lines, places.index(joint), labels)
+    return None if found is None else (*found, notes)
 
 
 def _layout(path: Path, file: TextIO) -> _Layout:
@@ -269,7 +310,7 @@ class _Rows:
             if line[0] in "#%" or line.startswith("//"):
                 continue
             self.whole = line[-1] == "\n"
-            yield line.replace(",", ".") if points and "," in line else line
+            yield with_points(line) if points and "," in line else line
 
 
 def _first(rows: Iterable[tuple[int, list[str]]], count: int) -> Iterator[tuple[int, list[str]]]:

@@ -198,7 +198,11 @@ def named(table: NumericTable, joints: Sequence[str] = ()) -> Iterator[Named]:
     columns, units = list(table.columns), table.units
     for writer in WRITERS:
         if _is_of(writer, columns):
-            yield from (found for column in columns if (found := _by_writer(writer, column, table.others)))
+            meant = [found for column in columns if (found := _by_writer(writer, column, table.others))]
+            yield from meant
+            if not any(one.kind == "time" for one in meant):
+                others = (_by_words(name, units.get(name, ""), joints) for name in columns)
+                yield from (one for one in others if one is not None and one.kind == "time")
             return
     known = [each for name in columns if (each := _by_words(name, units.get(name, ""), joints))]
     yield from known

@@ -13,7 +13,7 @@ OTHERS = {
     "base/engine_output.py", "base/engines.py", "base/entry_points.py",
     "base/errors.py", "base/former_names.py", "base/lazy_modules.py",
     "base/limits.py", "base/machine.py", "base/memory.py", "base/parquet.py", "base/paths.py",
-    "base/progress.py", "base/quantities.py", "base/sanitize.py", "base/tables.py", "base/ticks.py",
+    "base/progress.py", "base/quantities.py", "base/row_forms.py", "base/sanitize.py", "base/tables.py", "base/ticks.py",
     "caveats/contact_stability.py", "caveats/monitor.py",
     "caveats/plant_error.py", "caveats/rounding.py", "caveats/rule.py", "caveats/servo_contact_stability.py",
     "caveats/setting.py", "caveats/setting_rules.py", "caveats/time_constants.py", "caveats/trace_rules.py",
