@@ -64,7 +64,7 @@ def flat_names(names: Sequence[str], widths: Mapping[int, int]) -> list[str]:
 
 
 def flat_rows(path: Path, rows: Iterable[Row], names: Sequence[str], widths: Mapping[int, int]) -> Iterator[Row]:
-    """Yield rows with each number of a list in a cell of its own.
+    """Yield rows with each number of a list in a separate cell.
 
     Raises:
         TableError: if a list has another number of numbers; names the line.

@@ -264,7 +264,7 @@ def _layout(path: Path, file: TextIO) -> _Layout:
     separator = ";" if first.count(";") else max(",\t", key=first.count)
     layout = _Layout(separator if separator in first else "", (), (), number)
     (cells,) = layout.cells([first])
-    if any(_number(cell.strip(), layout.separator) is not None for cell in cells):
+    if any(number_in(_with_point(cell, layout.separator)) is not None for cell in cells):
         (above,) = layout.cells(comments[-1:]) if comments else ([],)
         if len(above) != len(cells) and comments:
             above = comments[-1].replace(",", " ").split()
@@ -333,12 +333,15 @@ def _text(sample: Sequence[tuple[int, list[str]]], place: int) -> str:
 
 def _is_cell(text: str) -> bool:
     """Return whether a cell holds a number, or says that it is missing."""
-    return text.lower() in MISSING or _number(text, "") is not None
+    return text.lower() in MISSING or number_in(_with_point(text, "")) is not None
 
 
-def _number(text: str, separator: str) -> float | None:
-    """Return the number in a cell, of a date with a time in s since 1970; None if there is none."""
-    text = text if separator == "," else text.replace(",", ".")
+def _with_point(text: str, separator: str) -> str:
+    return text.strip() if separator == "," else text.strip().replace(",", ".")
+
+
+def number_in(text: str) -> float | None:
+    """Return the number in a text, of a date with a time in s since 1970; None if there is none."""
     try:
         return float(text)
     except ValueError:
@@ -408,7 +411,7 @@ class _Numbers:
             self._add(f"line {lines[row]}: {self._names[self._places[column]]} is 'inf'; allowed: a finite number")
 
     def _cell(self, line: int, place: int, text: str) -> float:
-        found = _number(text, ",")
+        found = number_in(text)
         if found is not None:
             return found
         if self._strict and text.lower() not in MISSING:

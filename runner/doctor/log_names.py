@@ -2,7 +2,7 @@
 
 import re
 from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Literal
 
 from runner.base.tables import NumericTable
@@ -145,19 +145,27 @@ _WORDS: Sequence[tuple[Kind, str]] = (
         "q_d q_des des_q desired_q target_q q_target q_cmd cmd_q command cmd ref q_ref reference action "
         "setpoint target desired q_c position_command",
     ),
-    ("velocity", "qd dq vel velocity speed joint_vel joint_velocity qdot actual_qd"),
+    ("velocity", "qd dq vel velocity speed velocities joint_velocities joint_vel joint_velocity qdot actual_qd"),
     (
         "torque",
-        "tau torque effort moment tq tau_j joint_torque joint_effort tau_meas measured_tq tau_measured measured_torque",
+        "tau torque effort moment efforts torques joint_torques "
+        "tq tau_j joint_torque joint_effort tau_meas measured_tq tau_measured measured_torque",
     ),
-    ("current", "current motor_current i cur actual_current"),
+    ("current", "current currents motor_current i cur actual_current"),
     (
         "position",
-        "q pos position joint angle joint_pos joint_position joint_angle theta j q_meas actual_q "
+        "q pos position joint angle positions angles joint_positions joint_angles "
+        "joint_pos joint_position joint_angle theta j q_meas actual_q "
         "measured_q state actual axis q_actual",
     ),
 )
 _STEMS: Mapping[str, Kind] = {stem: kind for kind, stems in _WORDS for stem in stems.split()}
+_NEUTRAL = (  # words that leave a signal what it is
+    "joint", "joints", "axis", "state", "states", "robot", "arm", "measured", "meas", "actual", "observation", "obs",
+    "data", "feedback", "sensor", "sensors", "values",
+)  # fmt: skip
+_COMMANDED = ("desired", "des", "target", "cmd", "command", "commanded", "ref", "reference", "goal", "setpoint")
+_LISTS = ("name", "names", "joint_names", "joint_name", "joints")  # of the joints of lists
 _AXES = ("a", "ax", "axe", "achse", "asse", "eje", "gelenk")  # with a number: positions, if nothing else is one
 _TIMES = (
     "time",
@@ -204,7 +212,9 @@ def named(table: NumericTable, joints: Sequence[str] = ()) -> Iterator[Named]:
                 others = (_by_words(name, units.get(name, ""), joints) for name in columns)
                 yield from (one for one in others if one is not None and one.kind == "time")
             return
-    known = [each for name in columns if (each := _by_words(name, units.get(name, ""), joints))]
+    known = [
+        _with_joint(each, table.others) for name in columns if (each := _by_words(name, units.get(name, ""), joints))
+    ]
     yield from known
     if not any(each.kind in ("position", "reference") for each in known):
         for column in columns:
@@ -226,7 +236,7 @@ def _by_writer(writer: _Writer, column: str, texts: Mapping[str, str]) -> Named 
 
 def _words(column: str, unit: str) -> tuple[list[str], str]:
     """Return the words of a name in lower case, without its unit, and the unit."""
-    text = column.strip().lower()
+    text = re.sub(r"(?<=[a-z])(?=[A-Z][a-z]{2})", "_", column.strip()).lower()  # jointPosition
     if match := re.search(r"[\[(]\s*([a-z%*. ]+)\s*[\])]\s*$", text):
         unit, text = match[1], text[: match.start()].strip()
     words = [word for word in re.split(r"[\s_.\[\]()/:-]+", text) if word]
@@ -250,13 +260,35 @@ def _by_words(column: str, unit: str, joints: Sequence[str]) -> Named | None:
     number = re.search(r"(\d+)(?!.*\d)", plain)
     stem = plain if number is None else (plain[: number.start()] + plain[number.end() :]).strip("_")
     stem = re.sub(r"^(joint|j|axis)_(?=.)|(?<=.)_(joint|j|axis)$", "", stem)
-    if number is not None and stem in _STEMS:
-        return Named(column, _STEMS[stem], stem, number[1], unit, reason)
+    kind = _kind(stem)
+    if number is not None and kind is not None:
+        return Named(column, kind, stem, number[1], unit, reason)
     for place in range(1, len(words)):  # the name of a joint before or after the signal
         for signal, joint in (("_".join(words[place:]), words[:place]), ("_".join(words[:place]), words[place:])):
             if signal in _STEMS and signal not in ("j", "i", "joint", "axis"):
                 return Named(column, _STEMS[signal], signal, "_".join(joint), unit, reason)
     return None
+
+
+def _kind(stem: str) -> Kind | None:
+    """Return the signal of a stem, also of one with further words, such as state_q."""
+    if stem in _STEMS:
+        return _STEMS[stem]
+    words = [word for word in stem.split("_") if word and word not in _NEUTRAL]
+    kind = _STEMS.get("_".join(word for word in words if word not in _COMMANDED))
+    if any(word in _COMMANDED for word in words):
+        return "reference" if kind == "position" else None
+    return kind
+
+
+def _with_joint(one: Named, texts: Mapping[str, str]) -> Named:
+    """Return a meaning with the name of its joint, if a list of names stands next to the list of numbers."""
+    stem, found, label = one.column.rpartition(".")
+    if not found or label != one.label:
+        return one
+    beside = stem.rpartition(".")[0]
+    lists = (f"{beside}.{name}.{label}" if beside else f"{name}.{label}" for name in _LISTS)
+    return replace(one, label=next((texts[name] for name in lists if texts.get(name)), label))
 
 
 def plain_name(name: str) -> str:

@@ -1,4 +1,4 @@
-"""Tables of logs: text, Parquet, NumPy's arrays, LeRobot folders, mecademicpy's zip files, ROS bags; by content."""
+"""Tables of logs by content: text, JSON, Parquet, NumPy's arrays, LeRobot folders, mecademicpy's zip, ROS bags."""
 
 import io
 import zipfile
@@ -11,6 +11,7 @@ from runner.base.limits import LOG_FILES, RECORDING, ExcessError
 from runner.base.tables import NumericTable, read_table, read_text_table
 from runner.recordings.arrays import read_arrays
 from runner.recordings.bags import bag_files, read_bag
+from runner.recordings.json_logs import is_json, read_json
 from runner.recordings.lerobot import EPISODE, INFO, one_episode, read_lerobot
 
 _FOLDERS = "a bag of ROS 2 (.mcap or .db3 files), or a LeRobot data set (meta/info.json)"
@@ -57,11 +58,16 @@ def _read(path: Path, wanted: Sequence[str] | None, topic: str | None, episode: 
         raise ExcessError(f"it {excess}")
     if zipfile.is_zipfile(path):
         return _read_zip(path, wanted)
+    if is_json(path):
+        return _of_episode(path, read_json(path), episode)
 
     def choose(names: Sequence[str]) -> list[str]:
         return [*(wanted or ()), *([EPISODE] if EPISODE in names else [])]
 
-    table = read_table(path, None if wanted is None else choose)
+    return _of_episode(path, read_table(path, None if wanted is None else choose), episode)
+
+
+def _of_episode(path: Path, table: NumericTable, episode: int | None) -> NumericTable:
     if EPISODE in table.columns:
         return one_episode(table, episode)
     if episode is not None:

@@ -1,5 +1,6 @@
 """`runner doctor LOG` on every known format, up to the column map and the motion, and on bad input."""
 
+import json
 import shutil
 
 import numpy as np
@@ -83,6 +84,45 @@ def npz(tmp_path, signals):
     return tmp_path / "log.npz"
 
 
+def long(tmp_path, signals, joints):
+    rows = [
+        {"time": t, "joint": joint, **{name: signals[kind][row, place] for name, kind in SIGNALS.items()}}
+        for row, t in enumerate(signals["t"])
+        for place, joint in enumerate(joints)
+    ]
+    return csv(tmp_path, pd.DataFrame(rows))
+
+
+SIGNALS = {"position": "q", "velocity": "dq", "effort": "tau"}
+
+
+def lists(tmp_path, signals):
+    table = pd.DataFrame({"t": signals["t"], **{kind: signals[kind].round(7).tolist() for kind in ("q", "tau")}})
+    return csv(tmp_path, table)
+
+
+def json_lines(tmp_path, signals, joints):
+    """Write the messages of joint states as objects, by the alphabet of the joints."""
+    order = np.argsort(joints)
+    names = [joints[place] for place in order]
+    with (tmp_path / "log.jsonl").open("w") as file:
+        for row, t in enumerate(signals["t"]):
+            values = {name: signals[kind][row, order].tolist() for name, kind in SIGNALS.items()}
+            stamp = {"sec": 1_700_000_000 + int(t), "nanosec": round(1e9 * (t % 1.0))}
+            file.write(json.dumps({"header": {"stamp": stamp}, "name": names, **values}) + "\n")
+    return tmp_path / "log.jsonl"
+
+
+def nested_json(tmp_path, signals):
+    kinds = {"q": "q", "dq": "dq", "tau": "tau"}
+    rows = [
+        {"t": t, "state": {name: signals[kind][row].tolist() for name, kind in kinds.items()}, "mode": "run"}
+        for row, t in enumerate(signals["t"].tolist())
+    ]
+    (tmp_path / "log.json").write_text(json.dumps(rows))
+    return tmp_path / "log.json"
+
+
 FORMATS = {
     "commas": lambda p, s, m: csv(p, made.frame(s, made.PLAIN, 1)),
     "semicolons": lambda p, s, m: csv(p, made.frame(s, made.PLAIN, 1), ";", "log.tsv", decimal=","),
@@ -99,6 +139,10 @@ FORMATS = {
     "rostopic": lambda p, s, m: rostopic(p, s, m.joint_names),
     "axes": lambda p, s, m: axes(p, s),
     "npz": lambda p, s, m: npz(p, s),
+    "long": lambda p, s, m: long(p, s, m.joint_names),
+    "lists": lambda p, s, m: lists(p, s),
+    "json lines": lambda p, s, m: json_lines(p, s, m.joint_names),
+    "nested json": lambda p, s, m: nested_json(p, s),
     "libfranka": lambda p, s, m: csv(p, made.frame(s, made.FRANKA)),
 }
 BAGS = {
@@ -274,6 +318,8 @@ def doubled(table):
         (lambda p, f: (p / "log.csv").write_text(""), [], "is empty"),
         (lambda p, f: (p / "log.csv").write_bytes(b"\x00\x01" * 1000), [], "is neither text nor Parquet"),
         (lambda p, f: (p / "log.csv").write_text("once upon a time\nthere was an arm\n"), [], "no columns of joint"),
+        (lambda p, f: (p / "log.csv").write_text('{"t": 0}\n' * 9 + '{"t": ' + "[" * 999 + "\n"), [],
+         "line 10: is not JSON: nested deeper than 100 levels"),
         (lambda p, f: f[:200].to_csv(p / "log.csv", index=False), [], "the log lasts 1.59 s"),
         (lambda p, f: [(p / "log.csv").mkdir(), *((p / "log.csv" / str(k)).touch() for k in range(1000))], [],
          "a folder of 1,000 files is not a log"),
