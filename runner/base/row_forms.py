@@ -18,7 +18,9 @@ Row = tuple[int, list[str]]
 _COMMAS = re.compile(r"\[[^\]]*\]|\([^)]*\)|,")  # a list, or a comma outside of one
 _WIDEST = 1000  # numbers in a cell
 _LIST = re.compile(r"(?:array)?\(?\[([^\[\]()]*)\](?:, *dtype=\w+)?\)?|\(([^\[\]()]*)\)")
-_JOINT = re.compile(r"(joint|motor|axis|actuator|servo|dof)s?_?(name|id|index|number|nr|no)?|name|variable|signal|id")
+_JOINT = re.compile(
+    r"(joint|motor|axis|actuator|servo|dof|achse|gelenk)s?_?(name|id|index|number|nr|no)?|name|variable|signal|id"
+)
 _ALIKE = 0.9  # of the first cells, from which on another one is an error
 _MOST_JOINTS = 100
 _FILLED = 0.6  # of the pairs of time and joint

@@ -76,6 +76,7 @@ def examine_log(
         return _examine_given(path, model, given)
     table = read_log(path, None, topic, episode)
     names = list(named(table, () if model is None else model.joint_names))
+    _refuse_infinite(table, [one.column for one in names])
     time, period = time_of(table, names)
     findings = [DoctorFinding("note", "rows", note) for note in table.notes]
     if time is not None and time.asked:
@@ -101,6 +102,13 @@ def examine_log(
         return found
     said = ColumnsMap.model_validate(map_of(found, topic, episode))
     return judge(found, model, said)
+
+
+def _refuse_infinite(table: NumericTable, columns: Sequence[str]) -> None:
+    for name in columns:
+        rows = np.flatnonzero(np.isinf(table.columns[name]))
+        if len(rows):
+            raise RunnerError(f"{table.path}: {table.place(rows[0])}: {name} is infinite; allowed: a finite number")
 
 
 def _examine_given(path: Path, model: RobotModel | None, given: Path) -> LogExamination:

@@ -5,6 +5,8 @@ from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from typing import Literal
 
+import numpy as np
+
 from runner.base.tables import NumericTable
 from runner.recordings.messages import STAMP
 
@@ -143,7 +145,7 @@ _WORDS: Sequence[tuple[Kind, str]] = (
     (
         "reference",
         "q_d q_des des_q desired_q target_q q_target q_cmd cmd_q command cmd ref q_ref reference action "
-        "setpoint target desired q_c position_command",
+        "setpoint target desired q_c position_command soll sollwert sollposition",
     ),
     ("velocity", "qd dq vel velocity speed velocities joint_velocities joint_vel joint_velocity qdot actual_qd"),
     (
@@ -154,7 +156,7 @@ _WORDS: Sequence[tuple[Kind, str]] = (
     ("current", "current currents motor_current i cur actual_current"),
     (
         "position",
-        "q pos position joint angle positions angles joint_positions joint_angles "
+        "q pos position ist istwert istposition joint angle positions angles joint_positions joint_angles "
         "joint_pos joint_position joint_angle theta j q_meas actual_q "
         "measured_q state actual axis q_actual",
     ),
@@ -162,9 +164,22 @@ _WORDS: Sequence[tuple[Kind, str]] = (
 _STEMS: Mapping[str, Kind] = {stem: kind for kind, stems in _WORDS for stem in stems.split()}
 _NEUTRAL = (  # words that leave a signal what it is
     "joint", "joints", "axis", "state", "states", "robot", "arm", "measured", "meas", "actual", "observation", "obs",
-    "data", "feedback", "sensor", "sensors", "values",
+    "data", "feedback", "sensor", "sensors", "values", "msg", "message",
 )  # fmt: skip
-_COMMANDED = ("desired", "des", "target", "cmd", "command", "commanded", "ref", "reference", "goal", "setpoint")
+_COMMANDED = (
+    "desired",
+    "des",
+    "target",
+    "cmd",
+    "command",
+    "commanded",
+    "ref",
+    "reference",
+    "goal",
+    "setpoint",
+    "action",
+)
+_NO_SIGNALS = ("j", "i", "joint", "axis", "state")  # alone beside the name of a joint
 _LISTS = ("name", "names", "joint_names", "joint_name", "joints")  # of the joints of lists
 _AXES = ("a", "ax", "axe", "achse", "asse", "eje", "gelenk")  # with a number: positions, if nothing else is one
 _TIMES = (
@@ -184,6 +199,7 @@ _TIMES = (
     "sec",
     "seconds",
 )
+_OF_TIME = ("time", "timestamp", "stamp", "zeit", "zeitstempel")  # words of a name, of a column that only grows
 _TIPS = re.compile(r"(tip|tcp|ee|eef|tool|end_effector|laser|ee_pos|tcp_pose|position)?_?(?P<label>[xyz])")
 
 
@@ -208,19 +224,41 @@ def named(table: NumericTable, joints: Sequence[str] = ()) -> Iterator[Named]:
         if _is_of(writer, columns):
             meant = [found for column in columns if (found := _by_writer(writer, column, table.others))]
             yield from meant
-            if not any(one.kind == "time" for one in meant):
-                others = (_by_words(name, units.get(name, ""), joints) for name in columns)
-                yield from (one for one in others if one is not None and one.kind == "time")
+            yield from () if _has_time(meant) else _times(table)
             return
     known = [
         _with_joint(each, table.others) for name in columns if (each := _by_words(name, units.get(name, ""), joints))
     ]
     yield from known
+    yield from () if _has_time(known) else _times(table)
     if not any(each.kind in ("position", "reference") for each in known):
         for column in columns:
             words, unit = _words(column, units.get(column, ""))
             if match := re.fullmatch(rf"({'|'.join(_AXES)})_?(\d+)", "_".join(words)):
                 yield Named(column, "position", match[1], match[2], unit, f"the name {column!r}, of an axis")
+
+
+def _has_time(known: Sequence[Named]) -> bool:
+    return any(one.kind == "time" for one in known)
+
+
+def _times(table: NumericTable) -> Iterator[Named]:
+    """Yield the columns that may be the time: by the whole name first, else by a word of it if they only grow."""
+    others = [(name, *_words(name, table.units.get(name, ""))) for name in table.columns]
+    exact = [(name, unit) for name, words, unit in others if _is_time("_".join(words), name)]
+    growing = (
+        (name, unit)
+        for name, words, unit in others
+        if set(words) & set(_OF_TIME)
+        and not ((steps := np.diff(table.columns[name])) < 0.0).any()
+        and (steps > 0.0).any()
+    )
+    for name, unit in exact or growing:
+        yield Named(name, "time", "time", "", unit, f"the name {name!r}")
+
+
+def _is_time(plain: str, column: str) -> bool:
+    return plain in _TIMES or plain.removeprefix("_") in _TIMES or column.strip().lower() in _TIMES
 
 
 def _by_writer(writer: _Writer, column: str, texts: Mapping[str, str]) -> Named | None:
@@ -253,7 +291,7 @@ def _by_words(column: str, unit: str, joints: Sequence[str]) -> Named | None:
     of_joint = [joint for joint in joints if re.sub(r"\W", "_", joint.lower()) == plain]
     if len(of_joint) == 1:
         return Named(column, "position", "the joint's name", of_joint[0], unit, f"the name of the joint {of_joint[0]}")
-    if plain in _TIMES or plain.removeprefix("_") in _TIMES or column.strip().lower() in _TIMES:
+    if _is_time(plain, column):
         return Named(column, "time", "time", "", unit, reason)
     if match := _TIPS.fullmatch(plain):
         return Named(column, "tip", "tip", match["label"], unit, reason)
@@ -265,9 +303,13 @@ def _by_words(column: str, unit: str, joints: Sequence[str]) -> Named | None:
         return Named(column, kind, stem, number[1], unit, reason)
     for place in range(1, len(words)):  # the name of a joint before or after the signal
         for signal, joint in (("_".join(words[place:]), words[:place]), ("_".join(words[:place]), words[place:])):
-            if signal in _STEMS and signal not in ("j", "i", "joint", "axis"):
+            if signal in _STEMS and signal not in _NO_SIGNALS and not any(map(_is_signal, joint)):
                 return Named(column, _STEMS[signal], signal, "_".join(joint), unit, reason)
     return None
+
+
+def _is_signal(word: str) -> bool:
+    return word in _STEMS and word not in ("joint", "axis", "j")
 
 
 def _kind(stem: str) -> Kind | None:

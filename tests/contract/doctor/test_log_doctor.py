@@ -320,6 +320,8 @@ def doubled(table):
         (lambda p, f: (p / "log.csv").write_text("once upon a time\nthere was an arm\n"), [], "no columns of joint"),
         (lambda p, f: (p / "log.csv").write_text('{"t": 0}\n' * 9 + '{"t": ' + "[" * 999 + "\n"), [],
          "line 10: is not JSON: nested deeper than 100 levels"),
+        (lambda p, f: f.replace({"q3": {f.q3[40]: np.inf}}).to_csv(p / "log.csv", index=False), [],
+         "line 42: q3 is infinite; allowed: a finite number"),
         (lambda p, f: f[:200].to_csv(p / "log.csv", index=False), [], "the log lasts 1.59 s"),
         (lambda p, f: [(p / "log.csv").mkdir(), *((p / "log.csv" / str(k)).touch() for k in range(1000))], [],
          "a folder of 1,000 files is not a log"),
