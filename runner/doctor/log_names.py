@@ -179,7 +179,7 @@ _COMMANDED = (
     "setpoint",
     "action",
 )
-_NO_SIGNALS = ("j", "i", "joint", "axis", "state")  # alone beside the name of a joint
+_NO_SIGNALS = ("j", "i", "joint", "axis", "state")  # if the only word next to the name of a joint
 _LISTS = ("name", "names", "joint_names", "joint_name", "joints")  # of the joints of lists
 _AXES = ("a", "ax", "axe", "achse", "asse", "eje", "gelenk")  # with a number: positions, if nothing else is one
 _TIMES = (

@@ -50,9 +50,9 @@ def test_a_name_with_a_word_of_time_is_the_time_if_no_other_is(time, unit):
     (found,) = (one for one in meanings([time, "q1"]).values() if one.kind == "time")
     assert (found.column, found.unit) == (time, unit)
     assert "step_time" not in meanings(["t", "step_time", "q1"])
-    assert meanings(["elbow.position", "t"])["t"].kind == "time"  # also beside names of ROS
+    assert meanings(["elbow.position", "t"])["t"].kind == "time"  # also with names of ROS
 
 
-def test_names_beside_a_list_are_those_of_its_joints():
+def test_names_next_to_a_list_are_those_of_its_joints():
     found = meanings(["msg.position.0", "msg.position.1"], {"msg.name.0": "elbow", "msg.name.1": ""})
     assert [one.label for one in found.values()] == ["elbow", "1"]
