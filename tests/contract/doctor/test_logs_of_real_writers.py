@@ -3,6 +3,7 @@
 from pathlib import Path
 
 import numpy as np
+import pandas as pd
 import pytest
 
 from runner.assembly.validation import validate
@@ -63,3 +64,13 @@ def test_the_base_of_a_controller_is_proposed_and_asked_for_in_your_own_map(cli,
     assert ending.code == 1
     assert "as in a base that is turned by half a turn about z; 103% of the tip is unexplained now, 0%" in ending.out
     assert "Say sign: -1 for both." in ending.out
+
+
+def test_rows_of_two_moments_do_not_spoil_the_unit_of_a_torque(cli, tmp_path):
+    """ur-rtde writes such rows: a time with the values of the next one. They spoil accelerations."""
+    table = pd.read_csv(FOLDER / "record_py.csv", sep=" ")
+    for row in (60, 61, 62, 80):
+        table.iloc[row, 1:] = table.iloc[row + 1, 1:]
+    table.to_csv(tmp_path / "log.csv", index=False)
+    ending = cli("doctor", tmp_path / "log.csv", "--robot", "ur5e")
+    assert (ending.code, ending.out.count("ask  ")) == (0, 0), ending.out

@@ -185,17 +185,6 @@ def test_the_unit_that_a_column_has_is_not_proposed(arm):
     assert "if it is in m;" not in questions
 
 
-def test_noise_of_the_positions_is_not_taken_for_another_unit_of_torques(arm):
-    """Rows of two moments, as ur-rtde writes them, spoil accelerations, but not torques."""
-    rng = np.random.default_rng(4)
-
-    def torn(signals):
-        late = rng.random(len(T)) < 0.05
-        return {s: np.where(late, np.roll(v, -2), v) if s.kind == "position" else v for s, v in signals.items()}
-
-    assert not [q for q in check_consistency(arm, made(arm, change=torn)).questions if "times the model's" in q]
-
-
 def test_an_arm_that_stands_still_is_refused(arm):
     still = np.tile(motion(arm)[0], (len(T), 1))
     (question,) = check_consistency(arm, made(arm, still, kinds=())).questions
