@@ -84,6 +84,23 @@ def npz(tmp_path, signals):
     return tmp_path / "log.npz"
 
 
+def panda_python(tmp_path, signals):
+    """Save what `get_log` returns: lists of arrays, the time in ms as arrays of one."""
+    lists = {"tau_J": signals["tau"], "q": signals["q"], "dq": signals["dq"], "time": 1e3 * signals["t"][:, None]}
+    np.savez(tmp_path / "log.npz", **{name: list(rows) for name, rows in lists.items()})
+    return tmp_path / "log.npz"
+
+
+def plotjuggler_by_topic(tmp_path, signals, joints):
+    """Write what PlotJuggler 3.17 exports into a file for each topic: names without it, twelve digits."""
+    columns = {
+        f"{joint}/{name}": signals[kind][:, k] for k, joint in enumerate(joints) for name, kind in SIGNALS.items()
+    }
+    table = pd.DataFrame({"time": [f"{1.7e9 + t:.6f}" for t in signals["t"]], **columns})
+    table.to_csv(tmp_path / "log.csv", index=False, float_format="%.12g")
+    return tmp_path / "log.csv"
+
+
 def long(tmp_path, signals, joints):
     rows = [
         {"time": t, "joint": joint, **{name: signals[kind][row, place] for name, kind in SIGNALS.items()}}
@@ -139,6 +156,8 @@ FORMATS = {
     "rostopic": lambda p, s, m: rostopic(p, s, m.joint_names),
     "axes": lambda p, s, m: axes(p, s),
     "npz": lambda p, s, m: npz(p, s),
+    "panda-python": lambda p, s, m: panda_python(p, s),
+    "plotjuggler by topic": lambda p, s, m: plotjuggler_by_topic(p, s, m.joint_names),
     "long": lambda p, s, m: long(p, s, m.joint_names),
     "lists": lambda p, s, m: lists(p, s),
     "json lines": lambda p, s, m: json_lines(p, s, m.joint_names),
