@@ -229,6 +229,7 @@ def _replay(recording: Path, options: Namespace) -> None:
     """Make the run of a log, and compare it with the log."""
     from runner.cli.replay import replay
     from runner.config.compose.files import outputs_dir
+    from runner.doctor.log import LONGEST_GAP
     from runner.recordings.compare import compare_recording
 
     made = replay(
@@ -246,7 +247,12 @@ def _replay(recording: Path, options: Namespace) -> None:
             f"{made.run.folder}: the run {made.run.failure}; it cannot be compared. Try another --controller."
         )
     found = compare_recording(
-        made.run, recording, made.columns, options.fill_gaps or made.fill_gaps, not made.commanded
+        made.run,
+        recording,
+        made.columns,
+        options.fill_gaps or LONGEST_GAP,
+        not made.commanded,
+        made.recording,
     )
     _print_recording(found, options)
 

@@ -10,9 +10,10 @@ from runner.assembly.validation import validate
 from runner.base.atomic import write_atomically
 from runner.base.errors import RunnerError
 from runner.config.compose.compose import compose
-from runner.doctor.log import LONGEST_GAP, examine_log
+from runner.doctor.log import examine_log
 from runner.doctor.log_files import MAP, MOTION, map_text
 from runner.recordings.columns_map import read_map
+from runner.recordings.recording import Recording
 from runner.store import Run
 from runner.sweeps import job
 from runner.sweeps.arm import arm_of
@@ -30,14 +31,14 @@ class Replay:
         columns: The column map that was used.
         commanded: Whether the run follows commanded positions; otherwise it follows the measured ones.
         notes: What was done to make the motion, and the error that it makes.
-        fill_gaps: Longest gap of the log that is filled, in s; 0 for none.
+        recording: The signals of the log; None where gaps were filled, which the doctor does without asking.
     """
 
     run: Run
     columns: Path
     commanded: bool
     notes: tuple[str, ...]
-    fill_gaps: float
+    recording: Recording | None
 
 
 def replay(
@@ -72,8 +73,8 @@ def replay(
         raise RunnerError(
             f"{log}: {asked}. `runner doctor {log} --robot {robot} -o FOLDER` writes a map to complete for --columns"
         )
-    torques = [] if found.recording is None else found.recording.of_kind("torque")
-    if not (found.motion.commanded or torques):
+    recording = found.recording
+    if not (found.motion.commanded or (recording is not None and recording.of_kind("torque"))):
         raise RunnerError(f"{log}: has neither commanded positions nor torques, so that a replay says nothing.")
     texts = {MOTION: found.motion.text} | ({MAP: map_text(found, None, None)} if columns is None else {})
     digest = hashlib.sha256("\0".join((robot, *texts.values())).encode()).hexdigest()[:24]
@@ -92,7 +93,5 @@ def replay(
         *carried,
     )
     run, _ = job.perform(job.RunJob(with_long_motion(validate(compose(overrides, config_dirs)))))
-    filled = found.recording is not None and bool(found.recording.filled)
-    return Replay(
-        run, columns or folder / MAP, found.motion.commanded, found.motion.notes, LONGEST_GAP if filled else 0.0
-    )
+    whole = recording if recording is not None and not recording.filled else None
+    return Replay(run, columns or folder / MAP, found.motion.commanded, found.motion.notes, whole)

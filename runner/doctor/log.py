@@ -161,6 +161,7 @@ def judge(found: LogExamination, model: RobotModel, said: ColumnsMap, propose: b
         findings.append(DoctorFinding("note", f"joint '{joint}'", text))
     open_positions = any(finding.grade == "ask" for finding in findings)
     motion = None if open_positions else make_motion(model, recording)
+    recording = replace(recording, notes=(*recording.notes, *verdict.notes))
     findings += [] if motion is None else [DoctorFinding("note", "motion", note) for note in motion.notes]
     return replace(found, findings=[*found.findings, *findings], recording=recording, motion=motion)
 

@@ -118,7 +118,12 @@ class RecordingComparison:
 
 
 def compare_recording(
-    run: Run, path: Path, columns: Path, fill_gaps: float = 0.0, follows_measured: bool = False
+    run: Run,
+    path: Path,
+    columns: Path,
+    fill_gaps: float = 0.0,
+    follows_measured: bool = False,
+    examined: Recording | None = None,
 ) -> RecordingComparison:
     """Compare a recording with a run.
 
@@ -128,19 +133,14 @@ def compare_recording(
         columns: What its columns are, YAML; see ColumnsMap.
         fill_gaps: Longest gap of the recording that is filled, in s; 0 for none.
         follows_measured: Whether the run follows the recorded positions.
+        examined: The recording, where it was read and checked to make the run; None reads it.
 
     Raises:
         RunnerError: if a file cannot be read or does not fit the run; names what is wrong, and its line or column.
     """
     setting = setting_of(run)
     trace = setting.trace
-    said, factors = read_map(columns, trace.joint_names, trace.joint_units)
-    _check_payload(said, run, columns)
-    recording = read_recording(path, said, factors, fill_gaps)
-    verdict = check_consistency(setting.config.arm.model, recording)
-    if verdict.questions:
-        raise RunnerError(f"{columns}: {' '.join(verdict.questions)}")
-    recording = replace(recording, notes=(*recording.notes, *verdict.notes))
+    recording = examined or _checked(setting, run, path, columns, fill_gaps)
     moving = [signal for signal in recording.signals if signal.kind in ("position", "tip")]
     if not moving:
         raise RunnerError(f"{columns}: columns: needs the position of a joint, or a coordinate of the tip")
@@ -188,6 +188,17 @@ def compare_recording(
         follows_measured=follows_measured,
         by_commands=bool(commands),
     )
+
+
+def _checked(setting: ComparedRun, run: Run, path: Path, columns: Path, fill_gaps: float) -> Recording:
+    """Return a recording whose signals do not contradict each other."""
+    said, factors = read_map(columns, setting.trace.joint_names, setting.trace.joint_units)
+    _check_payload(said, run, columns)
+    recording = read_recording(path, said, factors, fill_gaps)
+    verdict = check_consistency(setting.config.arm.model, recording)
+    if verdict.questions:
+        raise RunnerError(f"{columns}: {' '.join(verdict.questions)}")
+    return replace(recording, notes=(*recording.notes, *verdict.notes))
 
 
 def _check_payload(said: ColumnsMap, run: Run, columns: Path) -> None:

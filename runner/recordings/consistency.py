@@ -219,13 +219,13 @@ class _Judge:
     def tip_rest(self, motion: EvenMotion) -> tuple[FloatArray, FloatArray]:
         """Return the residual of the tip, shape (3 N,), and its offsets in the frame of the tip and in the base."""
         axes = np.flatnonzero(~np.isnan(motion.tip[0]))
-        blocks, apart = [], []
-        for q, tip in zip(motion.q, motion.tip, strict=True):
-            pin.framesForwardKinematics(self._model, self._data, q)
-            pose = self._data.oMf[self._tip]
-            blocks.append(np.hstack([pose.rotation, np.eye(3)])[axes])
-            apart.append((tip - pose.translation)[axes])
-        A, b = np.vstack(blocks), np.concatenate(apart)
+        pose, blocks, reached = self._data.oMf[self._tip], np.empty((len(motion.q), 3, 6)), np.empty(motion.tip.shape)
+        blocks[:, :, 3:] = np.eye(3)
+        for row, q in enumerate(motion.q):
+            pin.forwardKinematics(self._model, self._data, q)
+            pin.updateFramePlacement(self._model, self._data, self._tip)
+            blocks[row, :, :3], reached[row] = pose.rotation, pose.translation
+        A, b = blocks[:, axes].reshape(-1, 6), (motion.tip - reached)[:, axes].ravel()
         offsets = np.linalg.lstsq(A, b, rcond=1e-6)[0]
         return b - A @ offsets, offsets
 
