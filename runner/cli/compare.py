@@ -21,6 +21,7 @@ from runner.store.kinds import kind_of
 
 if TYPE_CHECKING:
     from runner.recordings.compare import RecordingComparison
+    from runner.reporting.document import Document
     from runner.store import Run, Sweep
 
 # A missing file of such a name is called a log.
@@ -263,20 +264,24 @@ def _print_recording(found: "RecordingComparison", options: Namespace) -> None:
     from runner.reporting.render import write_report
     from runner.store.kinds import note
 
-    print(_recording_text(found), end="\n\n")
+    document = recording_document(found)
+    print(_recording_text(found, document), end="\n\n")
     made = options.output or report_folder(found)
-    write_report(recording_document(found), made)
+    write_report(document, made)
     note(made)
     print(made)
 
 
-def _recording_text(found: "RecordingComparison") -> str:
+def _recording_text(found: "RecordingComparison", report: "Document") -> str:
+    """Return the printed verdict and tables: those of the report, but for that of metrics, which has titles there."""
     from runner.plugins.metric_units import unit_of
     from runner.recordings import words
     from runner.recordings.verdict import verdict_lines
-    from runner.reporting.recording_report import friction, motions, residuals
     from runner.reporting.table import Cell, Number, Table, numbers, terminal
 
+    tables = {
+        section.title: [block for block in section.blocks if isinstance(block, Table)] for section in report.sections
+    }
     metrics: list[list[Cell]] = [
         [name, unit_of(name) or "", *map(Number, both)] for name, both in found.metrics.items()
     ]
@@ -287,8 +292,8 @@ def _recording_text(found: "RecordingComparison") -> str:
         f"recording  {found.recording.path}",
         one_line(words.aligned_text(found)),
         "",
-        terminal(residuals(found), indent=""),
-        *(line for table in motions(found) for line in ("", table.caption, terminal(table, indent=""))),
+        *(terminal(table, indent="") for table in tables["Residuals"]),
+        *(line for table in tables.get("Motions", ()) for line in ("", table.caption, terminal(table, indent=""))),
         "",
         one_line(words.FIT),
         "",
@@ -297,5 +302,4 @@ def _recording_text(found: "RecordingComparison") -> str:
         *words.lag_lines(found),
         *words.friction_lines(found),
     ]
-    identified = friction(found)
-    return "\n".join([*parts, *([terminal(identified, indent="")] if identified.rows else [])])
+    return "\n".join([*parts, *(terminal(table, indent="") for table in tables["Friction"])])

@@ -31,7 +31,7 @@ def verdict_lines(found: RecordingComparison) -> Iterator[str]:
     many = f", on {count} motions," if count > 1 else ""
     yield f"Over {quantity(last - first, 's')}{many} the model predicts {' and '.join(said)}."
     shares = explained(found)
-    causes = [f"{cause} {_per_cent(share)}" for cause, share in shares.items() if share >= _EXPLAINS]
+    causes = [f"{cause} {per_cent(share)}" for cause, share in shares.items() if share >= _EXPLAINS]
     if causes:
         yield f"Share of the torques' squared differences that a single cause explains: {', '.join(causes)}."
     elif shares:
@@ -53,22 +53,31 @@ def _positions(residuals: Sequence[Residual]) -> str:
     return f"{of} within {quantity(reached[worst.signal.of], worst.unit)} for 95 % of the time ({worst.signal.of})"
 
 
-def _torques(residuals: Sequence[Residual]) -> str:
-    """Return the rms of the differences over that of the torques, of all joints and of the worst."""
+def torque_shares(residuals: Sequence[Residual]) -> tuple[float, dict[str, float]] | None:
+    """Return the rms of the torques' differences over that of the torques, of all joints and of each; None without."""
     pairs = {
         one.signal.of: (one.rms**2, float(np.mean(one.recorded**2)))
         for one in residuals
         if one.signal.kind == "torque" and np.any(one.recorded)
     }
     if not pairs:
-        return ""
+        return None
     whole = np.sqrt(sum(off for off, _ in pairs.values()) / sum(size for _, size in pairs.values()))
-    worst, (off, size) = max(pairs.items(), key=lambda pair: pair[1][0] / pair[1][1])
-    of_worst = f" ({worst}: {_per_cent(np.sqrt(off / size))})" if len(pairs) > 1 else ""
-    return f"torques to {_per_cent(whole)} of their rms{of_worst}"
+    return float(whole), {joint: float(np.sqrt(off / size)) for joint, (off, size) in pairs.items()}
 
 
-def _per_cent(share: float) -> str:
+def _torques(residuals: Sequence[Residual]) -> str:
+    shares = torque_shares(residuals)
+    if shares is None:
+        return ""
+    whole, by_joint = shares
+    worst = max(by_joint, key=by_joint.__getitem__)
+    of_worst = f" ({worst}: {per_cent(by_joint[worst])})" if len(by_joint) > 1 else ""
+    return f"torques to {per_cent(whole)} of their rms{of_worst}"
+
+
+def per_cent(share: float) -> str:
+    """Return a share in per cent, with one decimal below a tenth."""
     return f"{100.0 * share:.{0 if share > 0.0995 else 1}f} %"
 
 

@@ -10,7 +10,7 @@ from runner.plugins.metric_units import unit_of
 from runner.recordings import digest_of, words
 from runner.recordings.compare import RecordingComparison, Residual
 from runner.recordings.motions import Accuracy, accuracies
-from runner.recordings.verdict import verdict_lines
+from runner.recordings.verdict import per_cent, torque_shares, verdict_lines
 from runner.reporting.charts.figure import spaced_indices
 from runner.reporting.document import (
     Curves,
@@ -54,7 +54,7 @@ def recording_document(found: RecordingComparison) -> Document:
         sections=[
             Section("Residuals", [_residual_curves(found), residuals(found), Text(f"The {words.FIT}.")]),
             *([Section("Motions", tables)] if (tables := motions(found)) else []),
-            Section("Both signals", [_both_curves(found)]),
+            *([Section("Torques of both", [_torque_curves(found)])] if _of_torques(found) else []),
             Section(
                 "Time offset",
                 [
@@ -83,12 +83,12 @@ def report_folder(found: RecordingComparison) -> Path:
 
 
 def _abstract(found: RecordingComparison) -> str:
-    text = f"The recording is compared with repetition 0 of the run, at the run's ticks; {words.aligned_text(found)}."
-    return "\n".join([" ".join(verdict_lines(found)), text])
+    notes = "; ".join(found.recording.notes)
+    return "\n".join([" ".join(verdict_lines(found)), *([f"{capital(notes)}."] if notes else [])])
 
 
 def _key_numbers(found: RecordingComparison) -> list[tuple[str, str, str]]:
-    """Return the offset, the worst fit of a position and the largest Coulomb friction that was identified."""
+    """Return the offset, the worst fit of a position, the torques' share and the largest Coulomb friction."""
     recording = found.recording
     offset = quantity(round(found.offset.start, 7), "s", digits=4)  # what it was searched to
     rows = f"after the recording's first row; rows {quantity(recording.period, 's')} apart"
@@ -96,8 +96,12 @@ def _key_numbers(found: RecordingComparison) -> list[tuple[str, str, str]]:
     moved = [(one.fit, one) for one in found.residuals if one.signal.kind != "torque" and one.fit is not None]
     if moved and not found.follows_measured:
         fit, worst = min(moved, key=lambda pair: pair[0])
-        told = f"{worst.signal.words}; rms of the residual {quantity(worst.rms, worst.unit)}"
+        told = f"of 1 at most; {worst.signal.words}, rms of the residual {quantity(worst.rms, worst.unit)}"
         numbers.append(("worst fit of a position", f"{fit:.3f}", told))
+    if shares := torque_shares(found.residuals):
+        whole, by_joint = shares
+        each = ", ".join(f"{joint} {per_cent(share)}" for joint, share in by_joint.items())
+        numbers.append(("torques differ by", per_cent(whole), f"of their rms; {each}"))
     for joint in () if found.friction is None else sorted(found.friction.joints, key=lambda one: -one.coulomb)[:1]:
         unit = "N m" if joint.unit == "rad" else "N"
         told = f"{joint.joint}; 95 % interval ± {quantity(joint.coulomb_half, unit)}"
@@ -205,8 +209,12 @@ def _made(found: RecordingComparison) -> list[ReportBlock]:
     ]
 
 
-def _both_curves(found: RecordingComparison) -> Curves:
-    """Return each signal of the recording and of the run over time."""
+def _of_torques(found: RecordingComparison) -> list[Residual]:
+    return [one for one in found.residuals if one.signal.kind == "torque"]
+
+
+def _torque_curves(found: RecordingComparison) -> Curves:
+    """Return each torque of the recording and of the run over time; curves of positions would cover each other."""
     panels = [
         Panel(
             literal(capital(one.signal.words)),
@@ -217,9 +225,9 @@ def _both_curves(found: RecordingComparison) -> Curves:
                 Series("run", one.t, one.simulated, "dashed", color=_SIMULATED),
             ],
         )
-        for one in found.residuals
+        for one in _of_torques(found)
     ]
-    return Curves("Each recorded signal, and that of the run.", panels, origin=origin(found.run))
+    return Curves("Each recorded torque, and that of the run.", panels, origin=origin(found.run))
 
 
 def _residual_curves(found: RecordingComparison) -> Curves:
