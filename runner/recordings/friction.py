@@ -39,6 +39,7 @@ if TYPE_CHECKING:
     import pandas as pd
 
 _ROUNDING = 1e-5  # of the largest singular value of Y: what is below tells of no mass
+_ROUNDED = 1e-10  # of the largest column of Y: a smaller one is zero but for rounding
 _TOLD_APART = 0.05  # share of a column of friction that other columns must leave
 _WEIGHINGS = 3
 _BLOCK = 0.5  # s, within which what is left over may be correlated
@@ -210,8 +211,9 @@ def _solve(
     """
     scaled = Y * weights[:, None]
     sizes = np.linalg.norm(scaled, axis=0)
-    u, s, _ = np.linalg.svd(scaled / np.where(sizes > 0.0, sizes, 1.0), full_matrices=False)
-    basis = u[:, s > _ROUNDING * s[0]]
+    filled = sizes > _ROUNDED * sizes.max()
+    u, s, _ = np.linalg.svd(scaled[:, filled] / sizes[filled], full_matrices=False)
+    basis = u[:, s > _ROUNDING * s.max(initial=0.0)]
 
     def without_masses(columns: FloatArray) -> FloatArray:
         rest: FloatArray = columns - basis @ (basis.T @ columns)

@@ -59,6 +59,17 @@ def test_friction_is_found_within_its_interval(model):
         assert abs(joint.coulomb - c) < 2.0 * joint.coulomb_half < 0.2 * c
 
 
+def test_rounding_does_not_change_it(model):
+    """Columns of the regressor that hold only rounding are no columns."""
+    motion = moved()
+    noise = np.random.default_rng(0)
+    measured = torques(model, motion) + friction_of(motion[1]) + noise.normal(0.0, 0.3, motion[0].shape)
+    one, other = (identify_friction(model, q, measured, H) for q in (motion[0], motion[0] * (1.0 + 1e-15)))
+    for joint, same in zip(one.joints, other.joints, strict=True):
+        assert joint.viscous == pytest.approx(same.viscous, rel=1e-8)
+        assert joint.coulomb_half == pytest.approx(same.coulomb_half, rel=1e-8)
+
+
 def test_intervals_hold_the_friction_about_as_often_as_they_say(model):
     motion = moved()
     clean = torques(model, motion) + friction_of(motion[1])
