@@ -19,7 +19,6 @@ from functools import cached_property
 import numpy as np
 from scipy.interpolate import CubicSpline
 from scipy.optimize import linear_sum_assignment, minimize_scalar
-from scipy.signal import correlate, find_peaks
 
 from runner.base.arrays import FloatArray
 from runner.base.errors import RunnerError
@@ -116,7 +115,9 @@ def find_offset(
         )
     if correlations[best] < _SURELY:
         _check_likeness(t, recorded, run_t, simulated, float(correlations[best]))
-    peaks, _ = find_peaks(correlations, height=_PEAK * correlations[best])
+    between = correlations[1:-1]
+    is_peak = (between > correlations[:-2]) & (between >= correlations[2:]) & (between >= _PEAK * correlations[best])
+    peaks = np.flatnonzero(is_peak) + 1
     peaks = np.append(best, peaks[np.argsort(-correlations[peaks])][:_MOST_PEAKS])
     match = _Match(t, recorded, run_t, simulated)
     start, rivals, open_ended = _chosen(match, lags[peaks].tolist())
@@ -170,14 +171,22 @@ def _correlate(
         one, other = v[:, place], w[:, place]
         squares = _energy(one**2, np.ones(len(w))) * _energy(np.ones(len(v)), other**2)
         if squares.min() > 0.0:
-            each[:, place] = correlate(one, other, method="fft") / np.sqrt(squares)
+            each[:, place] = _products(one, other) / np.sqrt(squares)
     lags = t[0] - run_t[0] + (np.arange(len(each)) - (len(w) - 1)) * step
     return lags, each[:, moving].mean(axis=1), each
 
 
+def _products(one: FloatArray, other: FloatArray) -> FloatArray:
+    """Return the sum of products of two signals at each lag of the one, shapes (N,) and (M,) to (N + M - 1,)."""
+    count = len(one) + len(other) - 1
+    size = 1 << (count - 1).bit_length()
+    products: FloatArray = np.fft.irfft(np.fft.rfft(one, size) * np.fft.rfft(other[::-1], size), size)[:count]
+    return products
+
+
 def _energy(one: FloatArray, other: FloatArray) -> FloatArray:
     """Return the sum of squares over what both cover at each lag, one of them being squares and the other ones."""
-    found: FloatArray = correlate(one, other, method="fft")
+    found = _products(one, other)
     return np.maximum(found, _OF_LARGEST * float(found.max()))
 
 

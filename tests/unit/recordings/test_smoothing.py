@@ -2,6 +2,7 @@
 
 import numpy as np
 import pytest
+from scipy.signal import butter, sosfiltfilt
 
 from runner.recordings.smoothing import CUTOFF, cutoff, low_pass
 
@@ -21,3 +22,11 @@ def test_the_low_pass_halves_its_frequency_and_delays_nothing(frequency, gain):
     wave = np.sin(2.0 * np.pi * frequency * times)
     middle = slice(500, 1500)
     assert low_pass(wave, 0.002, CUTOFF)[middle] == pytest.approx(gain * wave[middle], abs=5e-3)
+
+
+@pytest.mark.parametrize(("rows", "rate", "frequency"), [(4_000, 500.0, CUTOFF), (300, 50.0, 24.0), (3, 50.0, 10.0)])
+def test_the_low_pass_is_that_of_scipy(rows, rate, frequency):
+    walk = np.cumsum(np.random.default_rng(1).normal(size=(rows, 2, 3)), axis=0)
+    padding = min(rows - 2, round(3.0 * rate / frequency))
+    expected = sosfiltfilt(butter(4, frequency, fs=rate, output="sos"), walk, axis=0, padlen=padding)
+    assert low_pass(walk, 1.0 / rate, frequency) == pytest.approx(expected, rel=1e-10, abs=1e-10)
