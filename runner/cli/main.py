@@ -5,6 +5,7 @@ interrupted, 143 terminated. This module imports little, so that help and comple
 """
 
 import contextlib
+import gc
 import io
 import os
 import shlex
@@ -48,6 +49,7 @@ Exit codes: 0 success, 1 a run failed or a check failed, 2 invalid input, 3 inte
 command continues), 130 interrupted, 143 terminated.
 """
 _COLUMN, _WIDTH = 13, 120
+_NEW_OBJECTS = 100_000  # between two looks for garbage: nearly all that a command makes stays until its end
 
 
 def main() -> None:
@@ -56,6 +58,7 @@ def main() -> None:
         from runner.cli.completion.complete import complete
 
         complete()
+    gc.set_threshold(_NEW_OBJECTS)
     _open_outputs()
     signal.signal(signal.SIGTERM, _terminate)
     signal.signal(signal.SIGINT, _interrupt)
@@ -69,6 +72,7 @@ def main() -> None:
         if not isinstance(error, BrokenPipeError):
             print(f"runner: {describe_write_error(error) if error.errno in DISK_FULL else error}", file=sys.stderr)
             code = 2
+    gc.freeze()  # the interpreter looks for garbage once more before it ends
     sys.exit(code)
 
 
