@@ -27,6 +27,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 from numpy.typing import NDArray
+from scipy.linalg import svd
 from scipy.special import stdtrit
 
 from runner.base.arrays import FloatArray
@@ -115,11 +116,8 @@ def identify_friction(
     lacking: list[str] = []
     parts: list[_Part] = []
     for joint, name in enumerate(model.joint_names):
-        signals = (motion.torques[:, joint] - rigid[:, joint], motion.dq[:, joint], motion.signs[:, joint])
-        residual, speed, sign = map(motion.behind_filter, signals)
-        felt = Y[:, joint].any(axis=0)  # not the links before the joint
-        masses = np.zeros((len(motion.kept), Y.shape[2]))
-        masses[:, felt] = motion.behind_filter(Y[:, joint, felt])
+        signals = (motion.torques[:, joint] - rigid[:, joint], motion.dq[:, joint], motion.signs[:, joint], Y[:, joint])
+        residual, speed, sign, masses = map(motion.behind_filter, signals)
         moving = motion.moving(joint, speed, sign)
         if motion.unusable[joint]:
             lacking.append(f"{name}: {motion.unusable[joint]}")
@@ -215,7 +213,8 @@ def _solve(
     scaled = Y * weights[:, None]
     sizes = np.linalg.norm(scaled, axis=0)
     filled = sizes > _ROUNDED * sizes.max()
-    u, s, _ = np.linalg.svd(scaled[:, filled] / sizes[filled], full_matrices=False)
+    # The faster `gesdd` fails on some columns that depend on each other.
+    u, s, _ = svd(scaled[:, filled] / sizes[filled], full_matrices=False, lapack_driver="gesvd")
     basis = u[:, s > _ROUNDING * s.max(initial=0.0)]
 
     def without_masses(columns: FloatArray) -> FloatArray:

@@ -28,6 +28,8 @@ def low_pass(signals: FloatArray, period: float, frequency: float) -> FloatArray
         period: Time between two samples, in s.
         frequency: Cut-off, in Hz.
     """
+    if not signals.size:
+        return signals.copy()
     padding = min(len(signals) - 2, round(3.0 / (frequency * period)))
     before, after = 2.0 * signals[0] - signals[padding:0:-1], 2.0 * signals[-1] - signals[-2 : -2 - padding : -1]
     smooth = np.concatenate([before, signals, after]).reshape(len(signals) + 2 * padding, -1)
