@@ -226,7 +226,7 @@ class _Judge:
             pin.updateFramePlacement(self._model, self._data, self._tip)
             blocks[row, :, :3], reached[row] = pose.rotation, pose.translation
         A, b = blocks[:, axes].reshape(-1, 6), (motion.tip - reached)[:, axes].ravel()
-        offsets = np.linalg.lstsq(A, b, rcond=1e-6)[0]
+        offsets = np.asarray(np.linalg.lstsq(A, b, rcond=1e-6)[0], dtype=np.float64)
         return b - A @ offsets, offsets
 
 

@@ -53,7 +53,7 @@ def _one_way(signals: FloatArray, edge: float) -> FloatArray:
         passed *= edge**2 / scale
         bands = np.tile([[1.0], [before], [earlier]], len(passed))
         passed = dtbtrs(bands, passed, uplo="L", diag="U", overwrite_b=True)[0]
-    return passed + first
+    return np.asarray(passed + first, dtype=np.float64)
 
 
 def derivative(signals: FloatArray, period: float) -> FloatArray:
