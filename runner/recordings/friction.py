@@ -116,8 +116,11 @@ def identify_friction(
     lacking: list[str] = []
     parts: list[_Part] = []
     for joint, name in enumerate(model.joint_names):
-        signals = (motion.torques[:, joint] - rigid[:, joint], motion.dq[:, joint], motion.signs[:, joint], Y[:, joint])
-        residual, speed, sign, masses = map(motion.behind_filter, signals)
+        signals = (motion.torques[:, joint] - rigid[:, joint], motion.dq[:, joint], motion.signs[:, joint])
+        residual, speed, sign = map(motion.behind_filter, signals)
+        felt = Y[:, joint].any(axis=0)  # not the links before the joint
+        masses = np.zeros((len(motion.kept), Y.shape[2]))
+        masses[:, felt] = motion.behind_filter(Y[:, joint, felt])
         moving = motion.moving(joint, speed, sign)
         if motion.unusable[joint]:
             lacking.append(f"{name}: {motion.unusable[joint]}")
