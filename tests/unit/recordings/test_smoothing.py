@@ -30,3 +30,7 @@ def test_the_low_pass_is_that_of_scipy(rows, rate, frequency):
     padding = min(rows - 2, round(3.0 * rate / frequency))
     expected = sosfiltfilt(butter(4, frequency, fs=rate, output="sos"), walk, axis=0, padlen=padding)
     assert low_pass(walk, 1.0 / rate, frequency) == pytest.approx(expected, rel=1e-10, abs=1e-10)
+
+
+def test_the_low_pass_of_no_signals_is_empty():
+    assert low_pass(np.zeros((100, 0)), 0.01, CUTOFF).shape == (100, 0)
