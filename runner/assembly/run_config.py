@@ -32,7 +32,6 @@ from runner.trajectories import Trajectory
 from runner.trajectories.joint_motion import TipOfJoints
 
 # Fields that differ between configs of the same run, or that are new objects in each config.
-_OF_ALL_SEEDS = ("cache_key", "encoder_noise", "model_error", "interpreted")  # computed once
 _OF_ONE_RUN = frozenset({"settings", "composed", "loaded", "timing"})
 
 
@@ -102,8 +101,7 @@ class RunConfig:
 
     def with_seed(self, composed: Composed) -> "RunConfig":
         """Return the same run with the seed of another config, the only difference between the two."""
-        for name in _OF_ALL_SEEDS:
-            getattr(self, name)  # the copy has it, too
+        _ = self.cache_key, self.encoder_noise, self.model_error, self.interpreted  # computed once, for all copies
         other = copy(self)
         seed = composed.resolved["seed"]
         vars(other).update(settings=self.settings.model_copy(update={"seed": seed}), composed=composed)
