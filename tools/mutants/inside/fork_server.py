@@ -21,7 +21,7 @@ _LIBRARIES = (
     *("numpy", "scipy.linalg", "scipy.optimize", "scipy.signal", "scipy.stats", "pandas", "pyarrow.parquet"),
     *("pinocchio", "pybullet", "mujoco", "llvmlite.binding", "hydra", "omegaconf", "pydantic", "yaml", "typst"),
     *("matplotlib.pyplot", "matplotlib.backends.backend_agg", "plotly.graph_objects", "jinja2", "markdown_it"),
-    *("optuna", "distributed", "dask", "cryptography.x509", "hypothesis", "_hypothesis_pytestplugin", "xdist.plugin"),
+    *("optuna", "distributed", "dask", "hypothesis", "_hypothesis_pytestplugin", "xdist.plugin"),
 )
 _STARTS_AGAIN = "jemalloc_bg_thd"  # Arrow's memory: its library makes a new one in a fork
 
