@@ -21,7 +21,7 @@ from runner.base.tables import MISSING, NumericTable, number_in
 
 _WIDEST = 1000  # numbers in a list
 _ALIKE = 0.9  # of a list's lengths, from which on another one is an error
-_HEAD, _FIRST = 4096, 10  # bytes and lines that tell the form
+_HEAD, _FIRST = 4096, 10  # bytes and lines that show the form
 _STAMPS = ((".sec", ".nanosec"), (".secs", ".nsecs"), (".sec", ".nsec"))  # of ROS: a whole number of s and of ns
 _ALLOWED = "Allowed: an object on each line, an array of objects, or an object of arrays."
 

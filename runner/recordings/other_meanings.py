@@ -22,7 +22,7 @@ NO_GRAVITY = "holds: without_gravity"
 WITHOUT_GRAVITY = f"Say {NO_GRAVITY}."
 """End of the question whether gravity is in the torques."""
 MOVES = 1e-4
-"""What moves less tells nothing, in rad or m."""
+"""What moves less shows nothing, in rad or m."""
 
 
 @dataclass(frozen=True)

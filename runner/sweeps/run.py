@@ -333,7 +333,6 @@ def _workers(
     else:
         tell(duration_text(queue.rules, jobs, engine, expected))
         workers = min(engine.workers, jobs)
-        progress.begin("starting processes")
         with (
             local_processes(workers, _scratch(queue.rules)) as local,
             contextlib.closing(on_processes(queue, local)) as reports,
