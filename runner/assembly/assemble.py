@@ -13,7 +13,8 @@ from runner.assembly.flexibility import find_motor_side, is_flexible, with_nomin
 from runner.assembly.run_config import RunConfig
 from runner.assembly.wall import add_wall, touches_by_tip
 from runner.base.arrays import FloatArray
-from runner.controllers import Loop, tell_limits
+from runner.base.memory import Memory
+from runner.controllers import CONTROLLERS, Loop, tell_limits
 from runner.controllers.disturbance_observer import add_observers
 from runner.controllers.notch import add_notch
 from runner.environments import ENVIRONMENTS
@@ -26,6 +27,8 @@ from runner.robots.mismatch import MISMATCHES
 from runner.robots.robot import Robot
 from runner.sensing.streams import MISMATCH
 from runner.symbolic.structure import CannotCompileError
+
+_MEMORY = Memory(256)  # for starts
 
 
 def assemble(config: RunConfig, repetition: int = 0) -> ClosedLoop:
@@ -113,9 +116,19 @@ def check_assembly(config: RunConfig) -> None:
 def start_of(config: RunConfig) -> FloatArray:
     """Return the initial joint positions, shape (nq,), in rad, after the check that the arm can follow the path.
 
+    The result, which runs with the same desired motion share, must not be changed.
+
     Raises:
         ConfigError: if it cannot, or if it cannot reach the start.
     """
+    if CONTROLLERS.is_user_supplied(config.controller.kind):  # it may have state
+        return _checked_start(config)
+    decides = config.controller, config.arm, config.path, config.ignore_base_rotation, config.robot.settling_band
+    end = config.timing.ticks * config.timing.tick
+    return _MEMORY.known((*decides, end), lambda: _checked_start(config))
+
+
+def _checked_start(config: RunConfig) -> FloatArray:
     q_start = find_start(config.controller, config.arm, config.path, config.ignore_base_rotation)
     check_feasible(config, q_start)
     return q_start

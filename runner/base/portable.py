@@ -34,7 +34,7 @@ def solve_symmetric(A: FloatArray, b: FloatArray, singular: str = "the matrix is
         numpy.linalg.LinAlgError: if A is singular.
     """
     factors = eigen.LDLT(A)
-    if not factors.vectorD().all():
+    if np.count_nonzero(factors.vectorD()) < len(b):
         raise np.linalg.LinAlgError(singular)
     x: FloatArray = factors.solve(b)
     return x.reshape(b.shape)  # eigenpy gives other shapes for n = 1
@@ -42,7 +42,7 @@ def solve_symmetric(A: FloatArray, b: FloatArray, singular: str = "the matrix is
 
 def dot(a: FloatArray, b: FloatArray) -> FloatArray:
     """Return the scalar products along the last axis, shapes (..., n) and (..., n) to (...)."""
-    product: FloatArray = (a * b).sum(axis=-1)
+    product: FloatArray = np.add.reduce(a * b, axis=-1)
     return product
 
 

@@ -33,6 +33,7 @@ class SetPoints:
         self._ticks_per_command = ticks_per_command
         self._tick = tick
         self._farthest = speed_limits * tick
+        self._nearest = -self._farthest
         self._interpolate = interpolate
         self.position = np.zeros(len(speed_limits))
         """Set-point at the end of the tick, shape (nq,), in rad; updated in place."""
@@ -49,10 +50,10 @@ class SetPoints:
         """Move by one tick towards the command, joint positions of shape (nq,), in rad."""
         left = self._ramp - self._count % self._ramp  # ticks until the set-point reaches the command
         step = (command - self.position) / left
-        np.clip(step, -self._farthest, self._farthest, out=step)
+        np.minimum(np.maximum(step, self._nearest, out=step), self._farthest, out=step)
         self.position += step
         if self._interpolate:
-            self.velocity[:] = step / self._tick
+            np.divide(step, self._tick, out=self.velocity)
         self._count = (self._count + 1) % self._ticks_per_command
 
 
@@ -124,14 +125,12 @@ class ServoLaw:
             Torques, shape (nq,), in N m.
         """
         model, data, h = self._model, self._data, self._period
-        bias = pin.nonLinearEffects(model, data, q, dq).copy()
+        asked = self._stiffness * (position - q - h * dq) + self._damping * (velocity - dq)
+        if self._gravity_compensation:
+            asked += pin.computeGeneralizedGravity(model, data, q)
         M = pin.crba(model, data, q)  # fills the upper triangle only
-        G = pin.computeGeneralizedGravity(model, data, q) if self._gravity_compensation else 0.0
-        spring = self._stiffness * (position - q - h * dq)
-        slip = velocity - dq
-        np.einsum("ii->i", M)[:] += self._added_inertia
-        asked = spring + self._damping * slip + G
-        ddq = solve_symmetric(M.T, asked - bias)
+        M.ravel("K")[:: len(q) + 1] += self._added_inertia  # the diagonal
+        ddq = solve_symmetric(M.T, asked - pin.nonLinearEffects(model, data, q, dq))
         tau: FloatArray = asked - self._added_inertia * ddq
         return tau
 
@@ -183,5 +182,6 @@ class JointServo(PlantWrapper):
         """Pull the joints towards their commanded positions for one servo period; see PositionPlant."""
         self._set_points.advance(command)
         tau = self._law.torques(self.q, self.dq, self._set_points.position, self._set_points.velocity)
-        np.clip(tau, *self._limits.bounds(self.dq), out=self.tau)
+        lowest, highest = self._limits.bounds(self.dq)
+        np.minimum(np.maximum(tau, lowest, out=tau), highest, out=self.tau)
         self.plant.advance(self.tau + self.load)

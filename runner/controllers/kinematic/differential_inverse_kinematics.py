@@ -105,8 +105,8 @@ class DifferentialInverseKinematics(PositionController):
 
     def joint_positions(self, time: float, q: FloatArray, dq: FloatArray, reference: FloatArray) -> FloatArray:
         """Return the next command; see PositionController.joint_positions."""
-        off, turn = self._tip_offset(q) if self._measured else (np.zeros(3), np.eye(3))
         command, slope, motion = self._command, np.zeros_like(q), np.zeros_like(q)
+        off, turn = self._tip_offset(q) if self._measured else (np.zeros(3), None)
         bounds = (self._position_limits - command) / self._period
         bounds = np.minimum(np.maximum(bounds, -self._speed_limits), self._speed_limits)
         for place, weight in self._rule:
@@ -116,22 +116,30 @@ class DifferentialInverseKinematics(PositionController):
         self._command = command + self._period * motion
         return self._command
 
-    def _tip_offset(self, q: FloatArray) -> tuple[FloatArray, FloatArray]:
+    def _tip_offset(self, q: FloatArray) -> tuple[FloatArray, FloatArray | None]:
+        """Return how far the measured tip is from the commanded one: way, and rotation if the task is a pose."""
         x, R, _ = self._tip_at(self._command)
         x_measured, R_measured, _ = self._tip_at(q)
-        return x_measured - x, R_measured @ R.T
+        return x_measured - x, None if self._orientation is None else R_measured @ R.T
 
     def _joint_velocity(
-        self, q: FloatArray, ahead: float, off: FloatArray, turn: FloatArray, reference: FloatArray, bounds: FloatArray
+        self,
+        q: FloatArray,
+        ahead: float,
+        off: FloatArray,
+        turn: FloatArray | None,
+        reference: FloatArray,
+        bounds: FloatArray,
     ) -> FloatArray:
         """Return the bounded joint velocities of the law at joint positions commanded for a time ahead, in s."""
         x, R, J = self._tip_at(q)
         x_d, dx_d, ddx_d = reference
         v = self._gain * (x_d - x - off)
         if self._feedforward:
-            v += dx_d + ahead * ddx_d + self._gain * (ahead * dx_d + 0.5 * ahead**2 * ddx_d)
+            v += dx_d if ahead == 0.0 else dx_d + ahead * ddx_d + self._gain * (ahead * dx_d + 0.5 * ahead**2 * ddx_d)
         if self._orientation is not None:
-            v = np.concatenate([v, self._gain * pin.log3(self._orientation @ (turn @ R).T)])
+            turned = R if turn is None else turn @ R
+            v = np.concatenate([v, self._gain * pin.log3(self._orientation @ turned.T)])
         dq0 = self._null_space.velocity(q, J, self._directions)
         task, wanted = J[: len(v)], v
         if not self._whole:

@@ -73,9 +73,9 @@ class NullSpaceTask:
         else:
             direction = log_manipulability_gradient(J, directions)
         velocity: FloatArray = self._gain * direction
-        fastest = float(np.abs(velocity).max())
-        if self._max_speed is not None and fastest > self._max_speed:
-            velocity *= self._max_speed / fastest
+        if self._max_speed is not None:
+            fastest = float(np.abs(velocity).max())
+            velocity *= self._max_speed / max(self._max_speed, fastest)
         return velocity
 
 
@@ -174,5 +174,5 @@ class ResolvedRate:
     def _is_near(self, A: FloatArray) -> bool:
         """Return True if an eigenvalue of A is below damping^2; a Cholesky factorisation shows it faster."""
         above = A.copy()
-        above.flat[:: len(A) + 1] -= self._damping**2
+        above.reshape(-1)[:: len(A) + 1] -= self._damping**2  # the diagonal
         return bool(eigen.LLT(above).info() != eigen.ComputationInfo.Success)
