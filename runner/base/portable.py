@@ -46,6 +46,14 @@ def dot(a: FloatArray, b: FloatArray) -> FloatArray:
     return product
 
 
+def cross(a: FloatArray, b: FloatArray) -> FloatArray:
+    """Return a x b along the last axis, shapes (..., 3); on small arrays faster than NumPy's."""
+    product = np.empty(a.shape)
+    for i, j, k in ((0, 1, 2), (1, 2, 0), (2, 0, 1)):
+        product[..., i] = a[..., j] * b[..., k] - a[..., k] * b[..., j]
+    return product
+
+
 def norm(vector: FloatArray) -> float:
     """Return the length of a vector, shape (n,)."""
     return math.sqrt(dot(vector, vector))

@@ -31,7 +31,7 @@ class SetPoints:
     ) -> None:
         self._ramp = ticks_per_command if interpolate else 1
         self._ticks_per_command = ticks_per_command
-        self._tick = tick
+        self._tick = np.full(len(speed_limits), tick)  # an array is divided by faster than a float
         self._farthest = speed_limits * tick
         self._nearest = -self._farthest
         self._interpolate = interpolate
@@ -101,7 +101,7 @@ class ServoLaw:
 
     def __init__(self, model: RobotModel, config: ServoConfig, home: FloatArray) -> None:
         self._model, self._data = model.separate()
-        self._period = config.period
+        self._period = np.full(model.nq, config.period)  # an array is multiplied faster than a float
         self._stiffness = np.array(expand("plant.servo.stiffness", config.stiffness, model.joint_names))
         inertia = np.diagonal(model.mass_matrix(home))
         self._damping = 2.0 * config.damping_ratio * np.sqrt(self._stiffness * inertia)

@@ -27,6 +27,7 @@ _RULES = {
     "midpoint": ((0.0, 0.5), (0.0, 1.0)),
     "rk4": ((0.0, 0.5, 0.5, 1.0), (1.0 / 6.0, 1.0 / 3.0, 1.0 / 3.0, 1.0 / 6.0)),
 }
+_Tip = tuple[FloatArray, FloatArray, FloatArray]  # position, rotation, basic Jacobian
 
 
 class DifferentialInverseKinematicsConfig(StrictModel):
@@ -106,25 +107,30 @@ class DifferentialInverseKinematics(PositionController):
     def joint_positions(self, time: float, q: FloatArray, dq: FloatArray, reference: FloatArray) -> FloatArray:
         """Return the next command; see PositionController.joint_positions."""
         command, slope, motion = self._command, np.zeros_like(q), np.zeros_like(q)
-        off, turn = self._tip_offset(q) if self._measured else (np.zeros(3), None)
+        tip = self._tip_at(command)
+        off, turn = self._tip_offset(q, tip) if self._measured else (np.zeros(3), None)
         bounds = (self._position_limits - command) / self._period
         bounds = np.minimum(np.maximum(bounds, -self._speed_limits), self._speed_limits)
         for place, weight in self._rule:
             ahead = place * self._period
-            slope = self._joint_velocity(command + ahead * slope, ahead, off, turn, reference, bounds)
+            at = command
+            if ahead:
+                at = command + ahead * slope
+                tip = self._tip_at(at)
+            slope = self._joint_velocity(at, tip, ahead, off, turn, reference, bounds)
             motion += weight * slope
         self._command = command + self._period * motion
         return self._command
 
-    def _tip_offset(self, q: FloatArray) -> tuple[FloatArray, FloatArray | None]:
+    def _tip_offset(self, q: FloatArray, commanded: _Tip) -> tuple[FloatArray, FloatArray | None]:
         """Return how far the measured tip is from the commanded one: way, and rotation if the task is a pose."""
-        x, R, _ = self._tip_at(self._command)
-        x_measured, R_measured, _ = self._tip_at(q)
-        return x_measured - x, None if self._orientation is None else R_measured @ R.T
+        x, R, _ = self._tip_at(q)
+        return x - commanded[0], None if self._orientation is None else R @ commanded[1].T
 
     def _joint_velocity(
         self,
         q: FloatArray,
+        tip: _Tip,
         ahead: float,
         off: FloatArray,
         turn: FloatArray | None,
@@ -132,11 +138,10 @@ class DifferentialInverseKinematics(PositionController):
         bounds: FloatArray,
     ) -> FloatArray:
         """Return the bounded joint velocities of the law at joint positions commanded for a time ahead, in s."""
-        x, R, J = self._tip_at(q)
-        x_d, dx_d, ddx_d = reference
+        (x, R, J), (x_d, dx_d, ddx_d) = tip, reference
         v = self._gain * (x_d - x - off)
         if self._feedforward:
-            v += dx_d if ahead == 0.0 else dx_d + ahead * ddx_d + self._gain * (ahead * dx_d + 0.5 * ahead**2 * ddx_d)
+            v += dx_d if not ahead else dx_d + ahead * ddx_d + self._gain * (ahead * dx_d + 0.5 * ahead**2 * ddx_d)
         if self._orientation is not None:
             turned = R if turn is None else turn @ R
             v = np.concatenate([v, self._gain * pin.log3(self._orientation @ turned.T)])
@@ -146,7 +151,7 @@ class DifferentialInverseKinematics(PositionController):
             task, wanted = self._directions.dot(task), self._directions.dot(v)
         return self._resolved_rate.solve(task, wanted, dq0, *bounds)
 
-    def _tip_at(self, q: FloatArray) -> tuple[FloatArray, FloatArray, FloatArray]:
+    def _tip_at(self, q: FloatArray) -> _Tip:
         J = pin.computeFrameJacobian(self._model, self._data, q, self._tip, pin.LOCAL_WORLD_ALIGNED)
         placement = self._data.oMf[self._tip]
         return placement.translation.copy(), placement.rotation.copy(), J

@@ -7,7 +7,7 @@ from pydantic import NonNegativeFloat, PositiveFloat
 
 from runner.base.arrays import FloatArray
 from runner.base.lazy_modules import eigen
-from runner.base.portable import dot, solve_symmetric
+from runner.base.portable import cross, dot, solve_symmetric
 from runner.schema.model import StrictModel
 from runner.schema.units import JointPosition, JointSpeed, PerSecond
 
@@ -98,10 +98,10 @@ def log_manipulability_gradient(J: FloatArray, directions: FloatArray) -> FloatA
     linear, angular = J[:3].T, J[3:].T
     first = np.minimum.outer(np.arange(len(linear)), np.arange(len(linear)))  # [k, i]: the one nearer to the base
     last = np.maximum.outer(np.arange(len(linear)), np.arange(len(linear)))
-    dJ = np.cross(angular[first], linear[last])  # [k, i, row]
+    dJ = cross(angular[first], linear[last])  # [k, i, row]
     if directions.shape[1] == 6:
         upstream = np.tril(np.ones((len(linear), len(linear)))).T[:, :, None]  # k <= i
-        dJ = np.concatenate([dJ, upstream * np.cross(angular[first], angular[last])], axis=2)
+        dJ = np.concatenate([dJ, upstream * cross(angular[first], angular[last])], axis=2)
     dJ = dJ @ directions.T
     task = directions @ J[: directions.shape[1]]
     inverse = solve_symmetric(task @ task.T, task)  # (J J^T)^-1 J, the transpose of J^+

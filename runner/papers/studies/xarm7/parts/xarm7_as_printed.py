@@ -8,6 +8,7 @@ from pydantic import NonNegativeFloat, PositiveFloat
 
 from runner.base.arrays import FloatArray
 from runner.base.errors import ConfigError
+from runner.base.portable import cross
 from runner.controllers.controller import Loop, PositionController
 from runner.controllers.operational_space.tip_task import TaskName, task_start
 from runner.robots.model import RobotModel
@@ -57,9 +58,9 @@ class PrintedJacobian:
     """
 
     def __init__(self, model: RobotModel, columns: bool, angles: bool) -> None:
-        self._placements = list(model.pin_model.jointPlacements)[1:]
-        self._l4 = float(np.hypot(self._placements[4].translation[0], self._placements[4].translation[1]))
-        self._l5 = float(np.hypot(self._placements[6].translation[0], self._placements[6].translation[1]))
+        placements = list(model.pin_model.jointPlacements)[1:]
+        self._placements = [(placement.translation.copy(), placement.rotation.copy()) for placement in placements]
+        self._l4, self._l5 = (float(np.hypot(*self._placements[joint][0][:2])) for joint in (4, 6))
         self._columns = [0, 0, 1, 2, 3, 4, 5] if columns else list(range(7))
         self._angles = angles
 
@@ -67,11 +68,11 @@ class PrintedJacobian:
         """Return the Jacobian at joint positions, shape (6, 7), in m and 1: linear rows first, base frame."""
         origins, axes = np.empty((7, 3)), np.empty((7, 3))
         p, R = np.zeros(3), np.eye(3)
-        for joint, placement in enumerate(self._placements):
-            p = p + R @ self._translation(joint, placement.translation, q)
-            R = R @ placement.rotation @ pin.rpy.rpyToMatrix(0.0, 0.0, q[joint])
+        for joint, (translation, rotation) in enumerate(self._placements):
+            p = p + R @ self._translation(joint, translation, q)
+            R = R @ rotation @ pin.rpy.rpyToMatrix(0.0, 0.0, q[joint])
             origins[joint], axes[joint] = p, R[:, 2]
-        J = np.vstack([np.cross(axes, p - origins).T, axes.T])
+        J = np.vstack([cross(axes, p - origins).T, axes.T])
         return J[:, self._columns]
 
     def _translation(self, joint: int, right: FloatArray, q: FloatArray) -> FloatArray:
