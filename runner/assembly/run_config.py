@@ -8,6 +8,7 @@ from typing import cast
 
 from runner.assembly.timing import Timing
 from runner.base.arrays import FloatArray
+from runner.base.memory import Memory
 from runner.config.composed import Composed
 from runner.config.judgement import CaveatsConfig, SpecConfig
 from runner.config.limits import LimitsConfig, SweepConfig
@@ -33,6 +34,7 @@ from runner.trajectories.joint_motion import TipOfJoints
 
 # Fields that differ between configs of the same run, or that are new objects in each config.
 _OF_ONE_RUN = frozenset({"settings", "composed", "loaded", "timing"})
+_KEYS = Memory(4096)
 
 
 @dataclass(frozen=True)
@@ -124,11 +126,12 @@ class RunConfig:
 
     @cached_property
     def cache_key(self) -> tuple[object, ...]:
-        """All parts of a run except its seed: numbers, and objects that several configs share; see Memory."""
+        """All parts of a run except its seed: numbers, and shared objects; the same tuple for equal parts, see Memory."""
         parts = (vars(self)[name] for name in self.__match_args__ if name not in _OF_ONE_RUN)
         times = (part for name, part in vars(self.timing).items() if name != "late")
         several = (*self.loaded, self.timing.late)
-        return (*parts, *times, self.settings.repetitions, *(part for each in several for part in each))
+        key = (*parts, *times, self.settings.repetitions, *(part for each in several for part in each))
+        return _KEYS.known(key, lambda: key)
 
     @cached_property
     def encoder_noise(self) -> EncoderNoise | None:

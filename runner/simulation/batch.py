@@ -151,7 +151,7 @@ class BatchSimulator:
         """
         repetition = 0 if draws_together(config) else repetition
         drawn = (config.settings.seed, repetition) if config.varies_model else ()
-        return self.memory.known(("loop", *drawn, *config.cache_key), lambda: assemble_program(config, repetition))
+        return self.memory.known(("loop", *drawn, config.cache_key), lambda: assemble_program(config, repetition))
 
     def simulate(self, runs: Sequence[RunSpec]) -> Iterator[BatchResult | tuple[int, Trace]]:
         """Simulate runs; yield successful runs in batches, and the index and trace of each failed run."""
@@ -353,7 +353,7 @@ def simulate_together(runs: Sequence[Sequence[RunSpec]], batcher: BatchSimulator
 
 def _collector(place: int, runs: Sequence[RunSpec], batcher: BatchSimulator) -> Collector:
     config, q_start = runs[0].config, runs[0].q_start
-    setting = batcher.memory.known(("setting", q_start, *config.cache_key), lambda: setting_of(config, q_start))
+    setting = batcher.memory.known(("setting", q_start, config.cache_key), lambda: setting_of(config, q_start))
     watch = Watch(setting, config.caveats)
     return Collector(config, watch, len(runs), np.zeros((len(runs), 0)), place, runs[0].repetition)
 

@@ -108,7 +108,9 @@ class Collector:
     def put(self, repetitions: Sequence[int], names: tuple[str, ...], values: FloatArray) -> None:
         """Add the metrics of successful repetitions, shape (n, metrics); later ones may contain more metrics."""
         rows = np.array(repetitions, dtype=np.intp) - self.first
-        if names != self.names:
+        if not self.names:
+            self.names, self.values = names, np.full((len(self.values), len(names)), np.nan)
+        elif names != self.names:
             new = tuple(name for name in names if name not in self.names)
             self.names += new
             self.values = np.hstack([self.values, np.full((len(self.values), len(new)), np.nan)])

@@ -100,6 +100,6 @@ def _rows(runs: Iterable[Named], texts: JsonTexts, batcher: BatchSimulator) -> I
 
 def _provenance(config: RunConfig, batcher: BatchSimulator) -> dict[str, object]:
     """Return the provenance of a run; runs with the same components share most of it."""
-    key = ("provenance", config.composed.choices, *config.cache_key)
+    key = ("provenance", config.composed.choices, config.cache_key)
     common = batcher.memory.known(key, lambda: job_provenance(config))
     return {**common, "command": command(config.composed), "seed": config.settings.seed}
