@@ -126,7 +126,7 @@ class RunConfig:
 
     @cached_property
     def cache_key(self) -> tuple[object, ...]:
-        """All parts of a run except its seed: numbers, and shared objects; the same tuple for equal parts, see Memory."""
+        """All parts of a run but its seed: numbers and shared objects; the same tuple for equal parts, see Memory."""
         parts = (vars(self)[name] for name in self.__match_args__ if name not in _OF_ONE_RUN)
         times = (part for name, part in vars(self.timing).items() if name != "late")
         several = (*self.loaded, self.timing.late)

@@ -39,7 +39,7 @@ from runner.sensing import values_by_joint
 from runner.trajectories import TRAJECTORIES, HasStart, Trajectory
 from runner.trajectories.joint_motion import TipOfJoints
 
-_MEMORY = Memory(4096)
+_MEMORY = Memory(8192)
 
 
 def validate(composed: Composed) -> RunConfig:

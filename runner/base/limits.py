@@ -1,6 +1,7 @@
 """Size limits of external input, checked before memory is allocated."""
 
 import contextlib
+import functools
 import os
 import resource
 from collections.abc import Iterator
@@ -78,6 +79,7 @@ def bounded_memory(limit: Limit) -> Iterator[None]:
         yield
 
 
+@functools.cache
 def half_of_memory() -> float:
     """Return half of the memory available to the process on this machine or in its control group, in bytes."""
     whole = os.sysconf("SC_PAGE_SIZE") * os.sysconf("SC_PHYS_PAGES")

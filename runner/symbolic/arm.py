@@ -3,6 +3,7 @@
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 from functools import lru_cache
+from itertools import chain
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -16,6 +17,7 @@ from runner.symbolic.vectors import Matrix, Scalar, Vector, product, rotate_tens
 _ROUNDING = 1e-14  # a right angle's cosine is 6e-17
 _FIXED = (0.0, 1.0, -1.0)  # numbers that are not parameters of code
 _AXES = np.eye(3)
+_Entry = tuple[Any, float | None]  # a number, and the constant that it is equal to
 
 
 @dataclass(frozen=True)
@@ -96,31 +98,54 @@ def constants_of(
         tip: Name of the tip frame; None for the model's.
     """
     common = model.common if isinstance(model, DrawnModel) else model
-    bodies = _raw_bodies(common)
+    bodies, known = _raw_bodies(common), _raw_entries(common)
     if isinstance(model, DrawnModel):
         bodies = [_drawn(*own) for own in zip(bodies, model.rows.transpose(1, 2, 0), strict=True)]
+        known = [_entries(body) for body in bodies]
     frame = model.tip_frame if tip is None else model.pin_model.getFrameId(tip)
     tip_body, rotation, position = _raw_tip(common, frame)
     return ArmConstants(
-        tuple(
-            Body(
-                body.parent,
-                body.prismatic,
-                [[_scalar(value, number) for value in row] for row in body.rotation],
-                [_scalar(value, number) for value in body.position],
-                _scalar(body.mass, number),
-                [_scalar(value, number) for value in body.moment],
-                _symmetric(body.inertia, number),
-                _scalar(body.armature, number),
-                [[_scalar(value, number) for value in row] for row in body.turn],
-            )
-            for body in bodies
-        ),
+        tuple(_with_scalars(body, _scalars(entries, number)) for body, entries in zip(bodies, known, strict=True)),
         tip_body,
-        [[_scalar(value, number) for value in row] for row in rotation],
-        [_scalar(value, number) for value in position],
-        [_scalar(value, number) for value in _rounded(model.gravity)] if gravity is None else gravity,
+        _nested(rotation, number),
+        _nested(position, number),
+        _nested(_rounded(model.gravity), number) if gravity is None else gravity,
     )
+
+
+def _entries(body: Body) -> list[_Entry]:
+    """Return the numbers of a body in order, each with the constant 0, 1 or -1 that it is equal to, or None."""
+    upper = [body.inertia[i][j] for i in range(3) for j in range(i, 3)]
+    inertial = body.mass, *body.moment, *upper, body.armature
+    values = *chain(*body.rotation), *body.position, *inertial, *chain(*body.turn)
+    return [(value, constant_of(value)) for value in values]
+
+
+def _scalars(entries: Sequence[_Entry], number: Callable[[float], Scalar]) -> list[Scalar]:
+    if isinstance(number, Folding):
+        return [number.fold(value) for value, _ in entries]
+    return [number(value) if constant is None else constant for value, constant in entries]
+
+
+def _with_scalars(body: Body, scalars: Sequence[Scalar]) -> Body:
+    """Return a body with other numbers, in the order of `_entries`."""
+    xx, xy, xz, yy, yz, zz = scalars[16:22]
+    return Body(
+        body.parent,
+        body.prismatic,
+        [scalars[0:3], scalars[3:6], scalars[6:9]],
+        scalars[9:12],
+        scalars[12],
+        scalars[13:16],
+        [[xx, xy, xz], [xy, yy, yz], [xz, yz, zz]],
+        scalars[22],
+        [scalars[23:26], scalars[26:29], scalars[29:32]],
+    )
+
+
+@lru_cache(maxsize=256)
+def _raw_entries(model: RobotModel) -> Sequence[list[_Entry]]:
+    return [_entries(body) for body in _raw_bodies(model)]
 
 
 @lru_cache(maxsize=256)
@@ -234,8 +259,3 @@ def _near(values: FloatArray) -> FloatArray:
     nearest = np.clip(np.round(values), -1.0, 1.0)
     near = np.abs(values - nearest) < _ROUNDING
     return np.where(near, nearest + 0.0, values)
-
-
-def _symmetric(values: Matrix, number: Callable[[float], Scalar]) -> Matrix:
-    upper = {(i, j): _scalar(values[i][j], number) for i in range(3) for j in range(i, 3)}
-    return [[upper[min(i, j), max(i, j)] for j in range(3)] for i in range(3)]

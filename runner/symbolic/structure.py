@@ -1,6 +1,7 @@
 """Fixed structure and variable parameters of compiled control laws and arms."""
 
 from collections.abc import Callable, Mapping, Sequence
+from functools import lru_cache
 from typing import Any
 
 import numpy as np
@@ -67,6 +68,7 @@ def scalars(numbers: Any, number: Callable[[float], Scalar]) -> Any:
     return to_scalars(numbers, number)
 
 
+@lru_cache(maxsize=256)
 def arm_pattern(model: RobotModel) -> str:
     """Return a string that is the same for two arms with the same structure and the same constants 0, 1 and -1."""
     return repr(constants_of(model, any_number))

@@ -1,6 +1,7 @@
 """Torque law over expressions."""
 
 from collections.abc import Callable
+from functools import lru_cache
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -113,6 +114,7 @@ def expressed_torque(
     return list(np.asarray(torque).tolist()), list(np.asarray(after).tolist()), backend
 
 
+@lru_cache(maxsize=256)
 def law_cache_key(law: TorqueLaw[Any]) -> str:
     """Return a string that is the same for two laws with the same code.
 
