@@ -20,15 +20,16 @@ from runner.plugins.registry import KindConfig
 from runner.robots.description import mjcf_of, read_arm, read_urdf, with_payloads
 from runner.robots.elements import limit_of
 from runner.robots.inertials import Payload, armature_file, set_file
-from runner.robots.joint_dynamics import dynamics_of
+from runner.robots.joint_dynamics import FileDynamics, dynamics_of
 from runner.robots.model import RobotModel
 from runner.robots.mounting import TOOL_TIP, mount, mount_tool
 from runner.robots.robot import Robot, Stage, by_joint
-from runner.robots.tree import check_tip, tree_of
+from runner.robots.tree import UrdfTree, check_tip, tree_of
 from runner.schema.values import MountConfig, expand
 from runner.sensing.force_torque import ForceTorqueConfig
 
 _KEPT = 8
+_Files = tuple[tuple[Path, int, int], ...]  # with the time of the last change and the size of each
 _AT_LIMIT = 1e-9  # rad or m
 _TURN = 2.0 * np.pi
 _outlines: dict[tuple[object, ...], "RobotOutline"] = {}
@@ -132,17 +133,12 @@ def read_outline(config: RobotConfig, config_dirs: Sequence[Path] = ()) -> Robot
             names that clash between stages.
     """
     paths = [find_arm(key, arm, config_dirs) for key, arm in keyed_arms(config)]
-    files = tuple(
-        (file, file.stat().st_mtime_ns, file.stat().st_size)
-        for path, arm in zip(paths, config.arms.values(), strict=True)
-        for file in (*(mjcf_of(path).files if arm.mjcf else [path]), set_file(path), armature_file(path))
-        if file.exists()
-    )
-    key = (config.model_dump_json(), files)
+    files = [_dated(path, arm) for path, arm in zip(paths, config.arms.values(), strict=True)]
+    key = (config.model_dump_json(), *files)
     if key not in _outlines:
         if len(_outlines) == _KEPT:
             _outlines.clear()
-        _outlines[key] = _read(config, paths)
+        _outlines[key] = _read(config, paths, files)
     return _outlines[key]
 
 
@@ -173,15 +169,22 @@ def build_loaded(
     return tuple(found)
 
 
-def _read(config: RobotConfig, paths: Sequence[Path]) -> RobotOutline:
+def _dated(path: Path, arm: ArmConfig) -> _Files:
+    """Return the files of an arm, each with the time of its last change and its size."""
+    files = (*(mjcf_of(path).files if arm.mjcf else [path]), set_file(path), armature_file(path))
+    return tuple((file, file.stat().st_mtime_ns, file.stat().st_size) for file in files if file.exists())
+
+
+def _read(config: RobotConfig, paths: Sequence[Path], files: Sequence[_Files]) -> RobotOutline:
     stages: list[ArmOutline] = []
     joints: list[str] = []
     whole = below = ""
-    for path, name, (key, arm) in zip(paths, config.arms, keyed_arms(config), strict=True):
+    for path, dated, name, (key, arm) in zip(paths, files, config.arms, keyed_arms(config), strict=True):
         prefix, place = f"{name}_" if stages else "", _find_mount(key, arm, below, first=not stages)
         with _told_of(arm):
-            urdf = read_urdf(path, arm.masses, arm.armature, arm.inertials, arm.velocity_limits)
-            tree = tree_of(urdf, path)
+            masses, speeds = (tuple(values.items()) for values in (arm.masses, arm.velocity_limits))
+            armature = tuple(arm.armature) if isinstance(arm.armature, list) else arm.armature
+            urdf, tree = _read_arm(path, dated, masses, armature, arm.inertials, speeds)
             check_tip(arm.tip, [*tree.links, *tree.joints])
         whole = urdf if place is None else mount(whole, urdf, prefix, place)[0]
         chain = [tree.joints[joint] for joint in tree.chain]
@@ -195,6 +198,25 @@ def _read(config: RobotConfig, paths: Sequence[Path]) -> RobotOutline:
         below = prefix
     joint_friction("robot.friction", config.friction, joints)
     return RobotOutline(config, tuple(stages))
+
+
+@lru_cache(maxsize=_KEPT)
+def _read_arm(
+    path: Path,
+    _: _Files,  # decides what the file holds
+    masses: tuple[tuple[str, float], ...],
+    armature: float | tuple[float, ...] | str,
+    inertials: str | None,
+    velocity_limits: tuple[tuple[str, float], ...],
+) -> tuple[str, UrdfTree]:
+    """Return the URDF of an arm with the changes of its config, as text and as a tree; see read_urdf."""
+    urdf = read_urdf(path, dict(masses), armature, inertials, dict(velocity_limits))
+    return urdf, tree_of(urdf, path)
+
+
+@lru_cache(maxsize=_KEPT)
+def _dynamics_in(path: Path, _: _Files, gravity: float) -> FileDynamics:
+    return dynamics_of(read_arm(path), path.name, gravity)
 
 
 @lru_cache(maxsize=_KEPT)
@@ -212,7 +234,7 @@ def _build(outline: RobotOutline, gravity: float, sensor: tuple[float, float] | 
             model = RobotModel(urdf, own_tip, gravity)
         whole, base_frame = (urdf, None) if arm.place is None else mount(whole, urdf, arm.prefix, arm.place)
         tip, joints = arm.prefix + own_tip, slice(first, first + model.nq)
-        file = dynamics_of(read_arm(arm.path), arm.path.name, gravity)
+        file = _dynamics_in(arm.path, _dated(arm.path, arm.config), gravity)
         stages.append(Stage(arm.name, model, urdf, joints, np.array(arm.home), base_frame, file))
         first = joints.stop
     model = RobotModel(whole, tip, gravity) if len(stages) > 1 else stages[0].model

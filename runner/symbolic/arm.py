@@ -256,6 +256,8 @@ def _rounded(values: Any) -> Any:
 
 def _near(values: FloatArray) -> FloatArray:
     """Return numbers; those within rounding of 0, 1 or -1 are replaced by these."""
+    if not values.any():  # the usual case, and the rest is slow
+        return np.zeros(values.shape)
     nearest = np.clip(np.round(values), -1.0, 1.0)
     near = np.abs(values - nearest) < _ROUNDING
     return np.where(near, nearest + 0.0, values)

@@ -40,7 +40,7 @@ def values_of(visit: Visit, constants: Sequence[float | None] | None = None) -> 
     else:
         known = iter(constants)
         visit(Folding(number, lambda value: number(value) if (own := next(known)) is None else own))
-    return by_run(values)
+    return by_run(values) if any(isinstance(value, np.ndarray) for value in values) else np.array(values, dtype=float)
 
 
 def constants_in(visit: Visit) -> list[float | None]:
