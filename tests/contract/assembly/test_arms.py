@@ -61,3 +61,22 @@ def test_a_continuous_joint_is_named_as_such_wherever_it_starts(tmp_path, home):
         f"robot.urdf: joint 'q2' in {tmp_path / 'endless.urdf'} is continuous; allowed: revolute or prismatic; "
         "`runner doctor FILE --output DIR` makes a continuous joint revolute"
     ]
+
+
+def test_a_file_that_changed_is_read_anew(tmp_path):
+    file, urdf = tmp_path / "macro.urdf", find_urdf("macro.urdf").read_text()
+    file.write_text(urdf)
+    config = parse_robot(group_of("robot", compose(["robot=macro", f"robot.urdf={file}"]).resolved))
+    before = build_robot(read_outline(config), 9.81)
+    file.write_text(urdf.replace("</joint>", '<dynamics damping="7.0"/></joint>', 1))
+    after = build_robot(read_outline(config), 9.81)
+    assert (before.stages[0].file.damping[0], after.stages[0].file.damping[0]) == (0.0, 7.0)
+
+
+def test_a_payload_is_on_the_arm_of_the_same_file():
+    masses = []
+    for payload in (0.0, 1.5):
+        config = parse_robot(group_of("robot", compose(["robot=panda", f"robot.payload.mass={payload}"]).resolved))
+        bodies = build_robot(read_outline(config), 9.81).model.pin_model.inertias
+        masses.append(sum(body.mass for body in bodies))
+    assert masses[1] - masses[0] == pytest.approx(1.5)

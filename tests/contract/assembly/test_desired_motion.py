@@ -1,7 +1,11 @@
 """Starting motions against the position and speed limits of joints: each joint beyond one is named."""
 
+from dataclasses import replace
+
+import numpy as np
 import pytest
 
+from runner.assembly.assemble import start_of
 from runner.assembly.validation import validate
 from runner.base.errors import ConfigError
 from runner.config.compose.compose import compose
@@ -28,3 +32,16 @@ def test_a_joint_that_is_too_fast_is_told():
 
 def test_every_joint_beyond_a_limit_is_told():
     assert len(problems_of("trajectory.goal_configuration=4.0", "trajectory.duration=1")) == 3 + 7
+
+
+def test_runs_with_the_same_motion_check_once_that_the_arm_can_follow_it(monkeypatch):
+    asked = []
+    monkeypatch.setattr("runner.assembly.assemble.check_feasible", lambda config, q: asked.append(config))
+    base = ["robot=xarm7", "controller=differential_inverse_kinematics", "duration=0.0421"]
+    bullet, rk4, slower = (
+        compose([*base, *more]) for more in (["plant=bullet"], ["plant=rk4"], ["controller.gain=19.5"])
+    )
+    on_rk4 = replace(bullet, resolved={**bullet.resolved, "plant": rk4.resolved["plant"]})
+    starts = [start_of(validate(composed)) for composed in (bullet, on_rk4, slower)]
+    assert [config.controller.gain for config in asked] == [20.0, 19.5]
+    np.testing.assert_array_equal(starts[0], starts[1])
