@@ -123,7 +123,7 @@ class DifferentialInverseKinematics(PositionController):
         return self._command
 
     def _tip_offset(self, q: FloatArray, commanded: _Tip) -> tuple[FloatArray, FloatArray | None]:
-        """Return how far the measured tip is from the commanded one: way, and rotation if the task is a pose."""
+        """Return the way and, for a pose, the rotation from the commanded tip to the measured one."""
         x, R, _ = self._tip_at(q)
         return x - commanded[0], None if self._orientation is None else R @ commanded[1].T
 
