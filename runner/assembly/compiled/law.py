@@ -1,11 +1,11 @@
 """Torque law over expressions."""
 
 from collections.abc import Callable
-from functools import lru_cache
 from typing import Any, NamedTuple
 
 import numpy as np
 
+from runner.base.memory import Memory
 from runner.controllers.torque_law import Tip, TorqueLaw
 from runner.symbolic.algebra import ArmAlgebra
 from runner.symbolic.arm import ArmConstants, constants_of
@@ -14,6 +14,8 @@ from runner.symbolic.expression import Value
 from runner.symbolic.maths import Array
 from runner.symbolic.structure import CannotCompileError, any_number, arm_pattern, plain_structure, scalars
 from runner.symbolic.vectors import as_array
+
+_MEMORY = Memory(256)  # for patterns of laws
 
 
 class LawScalars(NamedTuple):
@@ -114,13 +116,16 @@ def expressed_torque(
     return list(np.asarray(torque).tolist()), list(np.asarray(after).tolist()), backend
 
 
-@lru_cache(maxsize=256)
 def law_cache_key(law: TorqueLaw[Any]) -> str:
     """Return a string that is the same for two laws with the same code.
 
     Raises:
         CannotCompileError: if the law has an attribute that cannot be compared.
     """
+    return _MEMORY.recall(_pattern, law)
+
+
+def _pattern(law: TorqueLaw[Any]) -> str:
     kind = type(law)
     return repr(
         (

@@ -1,5 +1,6 @@
 """Compiled torque laws: the torques of Pinocchio's evaluation, memory, errors, and what cannot be compiled."""
 
+from copy import copy
 from types import SimpleNamespace
 from typing import Any, NamedTuple
 
@@ -269,3 +270,13 @@ def test_without_the_library_laws_run_as_they_are(monkeypatch):
     law = law_of("macro", "operational_space")
     assert found(law) is None
     assert compiled_motion.CompiledStep.compile(law.models[0], 0.01) is None
+
+
+def test_a_law_without_a_hash_has_a_key():
+    law = copy(law_of("macro", "computed_torque"))
+
+    class Compared(type(law)):
+        __hash__ = None
+
+    law.__class__ = Compared
+    assert "Compared" in law_cache_key(law)
