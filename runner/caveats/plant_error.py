@@ -5,6 +5,7 @@ from typing import NamedTuple
 from runner.caveats.integration_error import PARTED, PLANT, PlantError, sufficient_step
 from runner.caveats.rule import Caveat, percent
 from runner.plugins.metric_units import unit_of
+from runner.schema.bound import Range
 
 NAME = "plant_error"
 _OF_BAND = 0.01  # of the settling band; smaller differences are ignored
@@ -38,15 +39,16 @@ def caveat_of(error: PlantError, own: PlantStep, threshold: float) -> Caveat | N
         own: Integration step of the run.
         threshold: Allowed relative error of a metric.
     """
+    allowed = Range(high=threshold)
     if error.parted is not None:
-        return Caveat(NAME, _parted(error, own), 1.0) if threshold < 1.0 else None
+        return Caveat(NAME, _parted(error, own), 1.0) if allowed.exceeded(1.0) else None
     shares = {
         name: worth.share
         for name, worth in error.metrics.items()
         if unit_of(name) == "m" and worth.share is not None and (worth.difference or 0.0) > _OF_BAND * own.band
     }
     worst = max(shares, key=shares.__getitem__, default=None)
-    if worst is None or shares[worst] <= threshold:
+    if worst is None or not allowed.exceeded(shares[worst]):
         return None
     return Caveat(NAME, _told(worst, shares[worst], own, threshold), shares[worst])
 

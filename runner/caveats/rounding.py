@@ -2,6 +2,7 @@
 
 from runner.caveats.rounding_growth import RoundingGrowth
 from runner.caveats.rule import Caveat, percent
+from runner.schema.bound import Range
 
 NAME = "rounding_grows"
 
@@ -13,18 +14,19 @@ def caveat_of(growth: RoundingGrowth, threshold: float) -> Caveat | None:
         growth: Changes of the run through a moved start.
         threshold: Allowed relative change.
     """
-    if growth.largest <= threshold:
+    allowed = Range(high=threshold)
+    if not allowed.exceeded(growth.largest):
         return None
     head = f"rounding errors grow by a factor of {growth.factor:.2g} until t = {growth.at:.4g} s"
-    text = f"{head}: another processor gives {_told(growth, threshold)}; judge it by repetitions with noise"
+    text = f"{head}: another processor gives {_told(growth, allowed)}; judge it by repetitions with noise"
     return Caveat(NAME, text, growth.largest)
 
 
-def _told(growth: RoundingGrowth, threshold: float) -> str:
+def _told(growth: RoundingGrowth, allowed: Range) -> str:
     own, moved = growth.failures
     if own != moved:
         return f"{_failing(moved)} instead of {_failing(own)}"
-    sensitive = [name for name, change in growth.metrics.items() if change > threshold]
+    sensitive = [name for name, change in growth.metrics.items() if allowed.exceeded(change)]
     worst = max(sensitive, key=growth.metrics.__getitem__)
     count = f"{len(sensitive)} of {len(growth.metrics)} metrics"
     return f"other values of {count}, of {worst} by {percent(growth.metrics[worst])}"

@@ -15,10 +15,10 @@ from runner.assembly.run_cost import memory_of_run
 from runner.base import progress
 from runner.base.errors import ConfigError
 from runner.store.identity import json_text
-from runner.store.names import Names, Texts
+from runner.store.names import Names
 from runner.sweeps.differing import Resolved, is_one_arm, resolve
 from runner.sweeps.job import CalibrationJob, check_job
-from runner.sweeps.plan import Plan, SeedBlock
+from runner.sweeps.plan import Plan
 
 _PROBLEMS_SHOWN = 20
 
@@ -76,7 +76,8 @@ def check(plan: Plan) -> Checked:
                     "outputs, sweep.*, limits.*, caveats.*, spec.*: must have one value in all runs of a sweep"
                 )
             _check_assembly(config, assembled)
-            names[cells] = _names(config, block)
+            alike = None if block.seeds is None else store.run_hashes(config.resolved, config.arm.urdf, block.seeds)
+            names[cells] = job.name if alike is None else alike.texts
             repetitions = config.settings.repetitions
             memory = max(memory, memory_of_run(config.arm, config.timing.ticks, repetitions, config.has_contact))
             start = config.path.start.tolist() if is_one_arm(composed.resolved) else None
@@ -100,13 +101,6 @@ def _report(plan: Plan, problems: Mapping[str, tuple[int, int]]) -> NoReturn:
     more = len(found) - _PROBLEMS_SHOWN
     hint = "  nothing was started" if more <= 0 else f"  and {more} more problems; nothing was started"
     raise ConfigError([_describe(plan, problem, *where) for problem, where in found[:_PROBLEMS_SHOWN]], hint)
-
-
-def _names(config: RunConfig, block: SeedBlock) -> Texts:
-    """Return the names of the runs of a block, shape (n,)."""
-    if block.seeds is None:
-        return Names.of([store.run_hash(config.resolved, config.arm.urdf)]).texts
-    return store.run_hashes(config.resolved, config.arm.urdf, block.seeds).texts
 
 
 def _shared(config: RunConfig) -> tuple[object, ...]:
