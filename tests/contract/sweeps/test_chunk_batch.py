@@ -114,7 +114,9 @@ def test_an_infinite_metric_is_refused_as_in_a_run_alone():
 
 
 @pytest.mark.costs(2)
-def test_a_failure_stops_the_sweep_after_the_runs_that_were_made_with_it(sweep, batches):
+def test_a_failure_stops_the_sweep_after_the_runs_that_were_made_with_it(sweep, batches, monkeypatch):
+    ticks = itertools.count(0.0, 0.1)  # as if each chunk took 0.1 s: ten runs in the second one
+    monkeypatch.setattr(work, "time", SimpleNamespace(perf_counter=lambda: next(ticks)))
     ended = sweep(*FAILING[:-1], "controller.natural_frequency=5,30", "seed=range(0,20)", "sweep.on_failure=stop")
     assert 1 <= len(ended.failures) < 20
     assert ended.left > 0
