@@ -1,5 +1,6 @@
 """JSON Schema of configs, with which an editor completes keys and shows their meaning and unit."""
 
+import functools
 import inspect
 import re
 from collections.abc import Mapping
@@ -84,6 +85,7 @@ def _properties(model: type[StrictModel]) -> dict[str, Any]:
     return {name: _property(model, name, told.get(name, "")) for name in model.model_fields}
 
 
+@functools.cache
 def _property(model: type[StrictModel], name: str, meaning: str) -> dict[str, Any]:
     field = model.model_fields[name]
     inner = nested_model(field.annotation)

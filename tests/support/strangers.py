@@ -8,6 +8,7 @@ from importlib.util import find_spec
 from pathlib import Path
 
 import pytest
+from fixtures.cost import counted_apart
 
 from runner.assembly.validation import validate
 from runner.config.compose.compose import compose
@@ -108,14 +109,15 @@ def short_examination() -> Iterator[None]:
 @functools.cache
 def robot(name) -> str:
     """The name of a third-party arm in the config folder."""
-    write_folder(read(name), folder())
+    with counted_apart():
+        write_folder(read(name), folder())
     return read(name).name
 
 
 @functools.cache
 def read(name):
     """The doctor's short examination of a third-party arm."""
-    with short_examination():
+    with short_examination(), counted_apart():
         return _examine(name)
 
 
