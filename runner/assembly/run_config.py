@@ -34,7 +34,7 @@ from runner.trajectories.joint_motion import TipOfJoints
 
 # Fields that differ between configs of the same run, or that are new objects in each config.
 _OF_ONE_RUN = frozenset({"settings", "composed", "loaded", "timing"})
-_KEYS = Memory(4096)
+_KEYS = Memory(512)  # a key holds its arm
 
 
 @dataclass(frozen=True)

@@ -9,6 +9,7 @@ from numpy.typing import NDArray
 from runner.base import portable
 from runner.base.arrays import FloatArray
 from runner.base.errors import ConfigError
+from runner.base.memory import Memory
 from runner.schema.values import FrictionConfig, expand
 from runner.symbolic.arm import to_scalars
 from runner.symbolic.maths import Backend
@@ -16,6 +17,7 @@ from runner.symbolic.vectors import Matrix, Scalar, Vector
 
 _STEEPEST = 700.0  # exp of it is a double
 _EXPONENTS = {"exponential": 1, "gauss": 2}
+_MEMORY = Memory(256)
 
 
 class JointFriction(NamedTuple):
@@ -116,7 +118,7 @@ class JointFriction(NamedTuple):
 
 
 def joint_friction(key: str, config: FrictionConfig, joints: Sequence[str]) -> JointFriction:
-    """Return the friction of each joint.
+    """Return the friction of each joint, which runs with the same friction share and must not change.
 
     Args:
         key: Key of the config, such as plant.friction.
@@ -127,7 +129,10 @@ def joint_friction(key: str, config: FrictionConfig, joints: Sequence[str]) -> J
         ConfigError: for a list of the wrong length, an unknown joint, a static level below the Coulomb level, an
             asymmetry above it, or a sigmoid that is too steep for its shift.
     """
+    return _MEMORY.recall(_joint_friction, key, config, *joints)
 
+
+def _joint_friction(key: str, config: FrictionConfig, *joints: str) -> JointFriction:
     def array(name: str, value: Any) -> FloatArray:
         return np.array(expand(f"{key}.{name}", value, joints))
 
