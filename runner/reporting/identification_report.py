@@ -19,6 +19,7 @@ from runner.reporting.document import (
 )
 from runner.reporting.markup import literal
 from runner.reporting.metric_titles import capital
+from runner.reporting.sections import added_sections, make_sections
 from runner.reporting.table import Cell, Column, Number, Origin, numbers
 
 _METHOD = (
@@ -37,24 +38,28 @@ _INTERVALS = (
 def identification_document(found: Identification) -> Document:
     """Return the report on an identification."""
     first, *rest = answer_lines(found)
-    sections = [
-        Section("Unseen torque", [accuracy(found)]),
-        Section("Parameters", [Text(_INTERVALS), parameters(found), *_untold(found)]),
-        Section("What speaks against it", _doubts(found)),
-        Section("Residuals", [_residuals(found, *view) for view in _VIEWS]),
-        Section("Alternatives", [_alternatives(found)]),
-        Section("Second method", _second(found)),
-        Section("Method and logs", _made(found)),
-    ]
+    own = make_sections(SECTIONS, found)
     return Document(
         title=f"{capital(found.robot.replace('_', ' '))}: identified from {_count(len(found.logs), 'log')}",
         subtitle=literal(", ".join(log.name for log in found.logs)),
         abstract="\n".join(literal(line) for line in [first, " ".join(rest)]),
-        sections=sections,
+        sections=[*own[:-1], *added_sections("identification", found), own[-1]],
         date=found.date,
         dated="Identified",
         key_numbers=_key_numbers(found),
     )
+
+
+def _unseen(found: Identification) -> Section:
+    return Section("Unseen torque", [accuracy(found)])
+
+
+def _parameters(found: Identification) -> Section:
+    return Section("Parameters", [Text(_INTERVALS), parameters(found), *_untold(found)])
+
+
+def _curves(found: Identification) -> Section:
+    return Section("Residuals", [_residuals(found, *view) for view in _VIEWS])
 
 
 def _count(many: int, what: str) -> str:
@@ -126,8 +131,9 @@ def _untold(found: Identification) -> list[ReportBlock]:
     return [Table("Parameters that the logs do not determine.", ["parameter", "reason", "motion that would"], rows)]
 
 
-def _doubts(found: Identification) -> list[ReportBlock]:
-    return [Notice("warning", literal(line), "") for line in doubts(found)] or [Text("Nothing was found.")]
+def _doubts(found: Identification) -> Section:
+    notices = [Notice("warning", literal(line), "") for line in doubts(found)]
+    return Section("What speaks against it", notices or [Text("Nothing was found.")])
 
 
 _VIEWS = (
@@ -153,7 +159,7 @@ def _residual_label(joint: JointAccuracy) -> str:
     return label_with_unit("residual", "N m" if joint.unit == "rad" else "N")
 
 
-def _alternatives(found: Identification) -> Table:
+def _alternatives(found: Identification) -> Section:
     rows: list[list[Cell]] = [
         [one.kind, Number(one.frequency), Number(100.0 * one.held_out, digits=3), Number(one.square, digits=3),
          "; ".join(one.follows) or "nothing", "chosen" if one.chosen else ""]
@@ -169,10 +175,10 @@ def _alternatives(found: Identification) -> Table:
         "What was tried. A further term or another cut-off is chosen if it lowers the weighted mean square of the "
         "errors on unseen torque by more than 1 % and two of its deviations over the stretches."
     )
-    return Table(caption, header, rows)
+    return Section("Alternatives", [Table(caption, header, rows)])
 
 
-def _second(found: Identification) -> list[ReportBlock]:
+def _second(found: Identification) -> Section:
     rows: list[list[Cell]] = [
         [one.name, _unit(one), Number(one.value), Number(one.second), Number(one.half), Number(one.white),
          "more than chance" if one.differs else ""]
@@ -186,18 +192,18 @@ def _second(found: Identification) -> list[ReportBlock]:
         "Ordinary least squares weighs all joints alike, and all rows. Under the right equations both methods agree "
         "within chance. Where they do not, the equations of the joints contradict each other."
     )
-    return [Text(text), Table("Comparison with ordinary least squares.", header, rows)]
+    return Section("Second method", [Text(text), Table("Comparison with ordinary least squares.", header, rows)])
 
 
-def _made(found: Identification) -> list[ReportBlock]:
+def _made(found: Identification) -> Section:
     rows = [(log.name, f"SHA-256 {log.digest}") for log in found.logs]
     rows += [("torques", f"{found.side} side"), ("date", found.date), ("command", found.command)]
     shapes = [
         Text(literal(f"Speed v_s of the friction: {', '.join(quantity(shape, 'rad/s') for shape in found.shapes)}."))
     ]
-    return [
-        Text(_METHOD),
-        *(Text(literal(line)) for line in method_lines(found)),
-        *(shapes if found.shapes else []),
-        Provenance(rows),
-    ]
+    lines = [Text(literal(line)) for line in method_lines(found)]
+    return Section("Method and logs", [Text(_METHOD), *lines, *(shapes if found.shapes else []), Provenance(rows)])
+
+
+SECTIONS = (_unseen, _parameters, _doubts, _curves, _alternatives, _second, _made)
+"""Sections: functions of the identification that return a section or None; plug-ins add theirs before the last."""

@@ -28,6 +28,7 @@ from runner.reporting.figures import origin
 from runner.reporting.markup import literal
 from runner.reporting.metric_titles import capital, title
 from runner.reporting.run_report import provenance
+from runner.reporting.sections import added_sections, make_sections
 from runner.reporting.table import Cell, Column, Number, numbers
 from runner.store.kinds import outputs_of, report_place
 
@@ -47,29 +48,33 @@ _ACCURACY: list[str | Column] = [
 def recording_document(found: RecordingComparison) -> Document:
     """Return the report on a recording and a run."""
     robot = str(found.run.config["robot"]["name"]).replace("_", " ")
+    own = make_sections(SECTIONS, found)
     return Document(
         title=f"{capital(robot)}: a recording and a run",
         subtitle=literal(f"{found.recording.path.name} against run {found.run.hash}"),
         abstract=literal(_abstract(found)),
-        sections=[
-            Section("Residuals", [_residual_curves(found), residuals(found), Text(f"The {words.FIT}.")]),
-            *([Section("Motions", tables)] if (tables := motions(found)) else []),
-            *([Section("Torques of both", [_torque_curves(found)])] if _of_torques(found) else []),
-            Section(
-                "Time offset",
-                [
-                    Text(literal(f"{capital(words.aligned_text(found))}.")),
-                    *(Text(literal(line)) for line in words.lag_lines(found)),
-                    _lag_curves(found),
-                ],
-            ),
-            Section("Friction", _friction(found)),
-            Section("Metrics of both", _metrics(found)),
-            Section("Provenance", _made(found)),
-        ],
+        sections=[*own[:-1], *added_sections("recording", found), own[-1]],
         date=str(found.run.provenance["date"]),
         key_numbers=_key_numbers(found),
     )
+
+
+def _differences(found: RecordingComparison) -> Section:
+    return Section("Residuals", [_residual_curves(found), residuals(found), Text(f"The {words.FIT}.")])
+
+
+def _accuracies(found: RecordingComparison) -> Section | None:
+    tables = motions(found)
+    return Section("Motions", tables) if tables else None
+
+
+def _torques(found: RecordingComparison) -> Section | None:
+    return Section("Torques of both", [_torque_curves(found)]) if _of_torques(found) else None
+
+
+def _offset(found: RecordingComparison) -> Section:
+    lines = [f"{capital(words.aligned_text(found))}.", *words.lag_lines(found)]
+    return Section("Time offset", [*(Text(literal(line)) for line in lines), _lag_curves(found)])
 
 
 def report_folder(found: RecordingComparison) -> Path:
@@ -157,7 +162,11 @@ def friction(found: RecordingComparison) -> Table:
     return Table("Friction of the recorded arm and of the run.", header, rows)
 
 
-def _friction(found: RecordingComparison) -> list[ReportBlock]:
+def _friction(found: RecordingComparison) -> Section:
+    return Section("Friction", _friction_blocks(found))
+
+
+def _friction_blocks(found: RecordingComparison) -> list[ReportBlock]:
     blocks: list[ReportBlock] = [Text(literal(text)) for text in words.friction_lines(found)]
     if found.friction is None or not found.friction.joints:
         return [Notice("warning", "No friction was identified", literal(" ".join(words.friction_lines(found))))]
@@ -170,9 +179,10 @@ def _friction(found: RecordingComparison) -> list[ReportBlock]:
     return [*blocks, friction(found), _friction_curves(found), Text(method)]
 
 
-def _metrics(found: RecordingComparison) -> list[ReportBlock]:
+def _metrics(found: RecordingComparison) -> Section:
+    name, none = "Metrics of both", "The recording has too few signals for any metric: neither all joints nor the tip."
     if not found.metrics:
-        return [Text("The recording has too few signals for any metric: neither all joints nor the tip.")]
+        return Section(name, [Text(none)])
     rows = [
         [title(name), name, *(above_rounding(value, unit_of(name) or "1") for value in both)]
         for name, both in found.metrics.items()
@@ -186,10 +196,10 @@ def _metrics(found: RecordingComparison) -> list[ReportBlock]:
     if not found.by_commands:
         text += "A constant delay of the arm is part of the time offset and not of the tracking errors."
     header = ["metric", Column("name on the command line", "code"), *numbers("run", "recording")]
-    return [Text(text), Table("Metrics of both.", header, rows)]
+    return Section(name, [Text(text), Table(f"{name}.", header, rows)])
 
 
-def _made(found: RecordingComparison) -> list[ReportBlock]:
+def _made(found: RecordingComparison) -> Section:
     recording = found.recording
     rows = [
         ("recording", recording.path.name),
@@ -202,11 +212,8 @@ def _made(found: RecordingComparison) -> list[ReportBlock]:
         for signal, column in recording.columns.items()
     ]
     caption = "Columns of the recording, and what makes their numbers SI."
-    return [
-        Provenance(rows),
-        Table(caption, [Column("column", "code"), "signal", *numbers("factor"), "unit"], columns),
-        provenance([found.run]),
-    ]
+    units = Table(caption, [Column("column", "code"), "signal", *numbers("factor"), "unit"], columns)
+    return Section("Provenance", [Provenance(rows), units, provenance([found.run])])
 
 
 def _of_torques(found: RecordingComparison) -> list[Residual]:
@@ -287,3 +294,7 @@ def _friction_curves(found: RecordingComparison) -> Curves:
         panels.append(Panel(literal(joint.joint), label_with_unit("speed", f"{joint.unit}/s"), label, series))
     caption = "Torque that the run's model and other masses leave over, against the speed, and the friction identified."
     return Curves(caption, panels, origin=origin(found.run))
+
+
+SECTIONS = (_differences, _accuracies, _torques, _offset, _friction, _metrics, _made)
+"""Sections: functions of the comparison that return a section or None; plug-ins add theirs before the last."""

@@ -42,7 +42,7 @@ def run_document(run: Run) -> Document:
         title=run_name(run),
         subtitle=_subtitle(run, subject.changed),
         abstract=literal(_abstract(run)),
-        sections=[own[0], *added_sections("run_section", subject), *own[1:]],
+        sections=[own[0], *added_sections("run", subject), *own[1:]],
         date=str(run.provenance["date"]),
         cover=_cover(run) if (~np.isnan(run.joints("q"))).all(axis=1).sum() > 1 else None,
         notes=[literal(f"Caveats: {', '.join(_spaced(caveat['rule']) for caveat in run.caveats)}.")]

@@ -4,7 +4,7 @@ import copy
 from collections.abc import Callable, Iterable, Iterator
 from dataclasses import dataclass, replace
 from functools import cached_property
-from typing import TYPE_CHECKING, Any, Literal, TypeVar
+from typing import TYPE_CHECKING, Any, TypeVar
 
 from runner.base.errors import ConfigError, describe_part_error
 from runner.plugins.discovery import added_parts, load
@@ -17,6 +17,8 @@ if TYPE_CHECKING:
     from runner.sweeps.changes import Changes
 
 S = TypeVar("S")
+
+_KINDS = ("run", "sweep", "comparison", "tuning", "challenge", "recording", "identification")  # of reports that plug-ins add to
 
 
 @dataclass(frozen=True)
@@ -43,21 +45,22 @@ def make_sections(functions: Iterable[Callable[[S], Section | None]], subject: S
     return [section for section in made if section is not None]
 
 
-def added_sections(name: Literal["run_section", "sweep_section"], subject: Any) -> list[Section]:
+def added_sections(kind: str, subject: Any) -> list[Section]:
     """Return the sections of plug-ins; one that fails is a section that states the fault.
 
     Args:
-        name: Name of the function of a plug-in.
+        kind: Kind of the report, such as run; the function of a plug-in is run_section.
         subject: The subject, a dataclass; each function receives a copy.
     """
-    return [section for point in added_parts("section") for section in _added(point.name, point.value, name, subject)]
+    return [section for point in added_parts("section") for section in _added(point.name, point.value, kind, subject)]
 
 
-def _added(plugin: str, module: str, name: str, subject: Any) -> Iterator[Section]:
+def _added(plugin: str, module: str, kind: str, subject: Any) -> Iterator[Section]:
     try:
-        members = vars(load("section", plugin, module))
-        if not {"run_section", "sweep_section"} & {*members}:
-            raise ConfigError(f"section {plugin}: module {module} needs run_section or sweep_section")
+        members, name = vars(load("section", plugin, module)), f"{kind}_section"
+        known = [f"{each}_section" for each in _KINDS]
+        if members.keys().isdisjoint(known):
+            raise ConfigError(f"section {plugin}: module {module} needs one of {', '.join(known)}")
         made = members[name](copy.deepcopy(replace(subject))) if name in members else None
         if made is not None:
             _check(made, members[name])

@@ -1,6 +1,7 @@
 """Report on a challenge: its sentences, the specification curve, the table of variations and the turning values."""
 
 from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass
 from itertools import chain
 
 import numpy as np
@@ -31,6 +32,7 @@ from runner.reporting.document import (
 )
 from runner.reporting.markup import literal
 from runner.reporting.metric_titles import capital, title
+from runner.reporting.sections import added_sections, make_sections
 from runner.reporting.sweep.report import run_command
 from runner.store.sweep import Sweep
 from runner.sweeps.challenge.question import CLASSES
@@ -43,6 +45,19 @@ _GREY = 7
 _GAP = 1.0  # between classes, in variations
 
 
+@dataclass(frozen=True)
+class ChallengeSubject:
+    """A challenge as its report looks at it: the subject of the sections of the report.
+
+    Attributes:
+        challenge: The challenge.
+        sweep: Its runs.
+    """
+
+    challenge: Challenge
+    sweep: Sweep
+
+
 def challenge_document(made: Challenge, sweep: Sweep) -> Document:
     """Return the report on a challenge.
 
@@ -50,34 +65,26 @@ def challenge_document(made: Challenge, sweep: Sweep) -> Document:
         made: The challenge.
         sweep: Its runs.
     """
+    subject = ChallengeSubject(made, sweep)
     a, b = (side.name for side in made.question.sides)
     first, *others = scope_sentences(made)
     at = f", {made.question.at}" if made.question.at else ""
-    commands = dict(zip(sweep.hashes, map(run_command, sweep.overrides), strict=True))
-    sections = [Section("Variations", _variations(made, commands))] if made.came_back else []
-    turned = [[label, text] for _, label, text in turning_rows(made)]
-    if turned:
-        text = (
-            "Five values between the asked one and the variation are simulated with 24 further pairs, then the roots "
-            "of the difference and of both ends of its 95 % interval."
-        )
-        sections.append(Section("Where it turns", [Text(text), Table("", ["towards", "found"], turned)]))
-    if any(one.pairs for one in made.combined):
-        text = f"Changes are drawn from seed {made.question.seed}, each nearly equally often. Nothing is tested."
-        sections.append(Section("Several changes at once", [Text(text), combinations_table(made)]))
-    sections.append(Section("Not covered", [Text(NOT_DONE)]))
-    sections.append(Section("Provenance", [Code(made.command), Provenance([("challenge", made.folder.name)])]))
+    own = make_sections(SECTIONS, subject)
     return Document(
         title=f"For which choices does the answer hold: {a} or {b}?",
         subtitle=literal(f"{capital(title(made.question.metric))}{at}"),
         abstract=literal("\n".join(map(one_line, [first, *others]))),
-        sections=sections,
+        sections=[*own[:-1], *added_sections("challenge", subject), own[-1]],
         date="",
     )
 
 
-def _variations(made: Challenge, commands: Mapping[str, str]) -> list[ReportBlock]:
+def _variations(subject: ChallengeSubject) -> Section | None:
     """Return the specification curve and the table of the variations."""
+    made, sweep = subject.challenge, subject.sweep
+    if not made.came_back:
+        return None
+    commands = dict(zip(sweep.hashes, map(run_command, sweep.overrides), strict=True))
     placed = list(_placed(made))
     blocks: list[ReportBlock] = []
     if placed:
@@ -88,7 +95,37 @@ def _variations(made: Challenge, commands: Mapping[str, str]) -> list[ReportBloc
         )
         panels = [_differences(made, placed, commands), _choices(placed)]
         blocks.append(Curves(literal(caption), panels, columns=1))
-    return [*blocks, variations_table(made)]
+    return Section("Variations", [*blocks, variations_table(made)])
+
+
+def _turns(subject: ChallengeSubject) -> Section | None:
+    turned = [[label, text] for _, label, text in turning_rows(subject.challenge)]
+    text = (
+        "Five values between the asked one and the variation are simulated with 24 further pairs, then the roots "
+        "of the difference and of both ends of its 95 % interval."
+    )
+    return Section("Where it turns", [Text(text), Table("", ["towards", "found"], turned)]) if turned else None
+
+
+def _combinations(subject: ChallengeSubject) -> Section | None:
+    made = subject.challenge
+    if not any(one.pairs for one in made.combined):
+        return None
+    text = f"Changes are drawn from seed {made.question.seed}, each nearly equally often. Nothing is tested."
+    return Section("Several changes at once", [Text(text), combinations_table(made)])
+
+
+def _not_covered(_: ChallengeSubject) -> Section:
+    return Section("Not covered", [Text(NOT_DONE)])
+
+
+def _made(subject: ChallengeSubject) -> Section:
+    made = subject.challenge
+    return Section("Provenance", [Code(made.command), Provenance([("challenge", made.folder.name)])])
+
+
+SECTIONS = (_variations, _turns, _combinations, _not_covered, _made)
+"""Sections: functions of the subject that return a section or None; plug-ins add theirs before the last."""
 
 
 def _placed(made: Challenge) -> Iterator[tuple[float, AnsweredVariation]]:

@@ -2,6 +2,8 @@
 
 import math
 from collections.abc import Sequence
+from dataclasses import dataclass
+from functools import cached_property
 
 import numpy as np
 
@@ -38,6 +40,7 @@ from runner.reporting.document import (
 )
 from runner.reporting.markup import literal
 from runner.reporting.metric_titles import capital, title, whole_metrics
+from runner.reporting.sections import added_sections, make_sections
 from runner.reporting.sentences import sentences, short_table
 from runner.reporting.sweep.subject import MOST_METRICS, main_metrics, shorten, spans_decades
 from runner.reporting.table import numbers
@@ -51,6 +54,24 @@ _MOST_CELLS = 24
 _MOST_ROWS = 40  # of differing values
 
 
+@dataclass(frozen=True)
+class ComparisonSubject:
+    """Sweeps or runs as the report on their comparison looks at them: the subject of the sections of the report.
+
+    Attributes:
+        sides: Two or more; the others are compared with the first.
+        wanted: Metrics that are compared; empty for all.
+    """
+
+    sides: Sequence[Measurements]
+    wanted: Sequence[str] = ()
+
+    @cached_property
+    def compared(self) -> list[SweepComparison]:
+        """The comparison of each other side with the first; see compare_sweeps."""
+        return [compare_sweeps(self.sides[0], side, self.wanted) for side in self.sides[1:]]
+
+
 def comparison_document(sides: Sequence[Measurements], wanted: Sequence[str] = ()) -> Document:
     """Return the report on several stored sweeps; the others are compared with the first.
 
@@ -61,13 +82,11 @@ def comparison_document(sides: Sequence[Measurements], wanted: Sequence[str] = (
     Raises:
         RunnerError: If two share no cell, no seed or no metric, or have no such metric.
     """
-    found = [compare_sweeps(sides[0], side, wanted) for side in sides[1:]]
-    if len(found) == 1:
-        compared = _sections(found[0], wanted)
-    else:
-        compared = [
-            Section(f"{one.pairs.second} against {one.pairs.first}", (), _sections(one, wanted)) for one in found
-        ]
+    subject = ComparisonSubject(sides, wanted)
+    found = subject.compared
+    by_pair = [(f"{one.pairs.second} against {one.pairs.first}", make_sections(OF_PAIR, one)) for one in found]
+    compared = by_pair[0][1] if len(found) == 1 else [Section(name, (), own) for name, own in by_pair]
+    details = make_sections(SECTIONS, subject)
     lines = [text for one in found for text in sentences(one.answers)[:1]]
     lines += [one.differences.in_words(one.pairs.first, one.pairs.second) for one in found]
     shared = [text for text in sides[0].fixed if all(text in side.fixed for side in sides)]
@@ -77,7 +96,7 @@ def comparison_document(sides: Sequence[Measurements], wanted: Sequence[str] = (
         title=(len(found) == 1 and found[0].differences.question("A", "B")) or f"{len(sides)} sweeps compared",
         subtitle=literal(", ".join(shared or [f"{side.name}: {side.folder.resolve().name}" for side in sides])),
         abstract=literal("\n".join(map(one_line, lines))),
-        sections=[*compared, _sides(sides), _caveats(sides), _made(sides)],
+        sections=[*compared, *added_sections("comparison", subject), *details],
         date=max(max(side.provenance["made on"]) for side in sides),
         key_numbers=_key_numbers(found[0]),
         map=make_map(found[0].answers) if len(found) == 1 else None,
@@ -100,37 +119,36 @@ def _key_numbers(found: SweepComparison) -> list[tuple[str, str, str]]:
     return [*numbers, (f"{title(first.metric)}, {b} - {a}", difference, f"{interval}, {n} pairs: {first.word}")]
 
 
-def _sides(sides: Sequence[Measurements]) -> Section:
-    rows = [[side.name, side.folder.resolve().name, ", ".join(side.fixed), size_told(side)] for side in sides]
+def _sides(subject: ComparisonSubject) -> Section:
+    rows = [[side.name, side.folder.resolve().name, ", ".join(side.fixed), size_told(side)] for side in subject.sides]
     return Section("The sweeps", (Table("What is compared.", ["name", "sweep", "fixed", "cells"], rows),))
 
 
-def _sections(found: SweepComparison, wanted: Sequence[str]) -> list[Section]:
+def _answers(found: SweepComparison) -> Section:
+    texts = sentences(found.answers)[1:]
+    return Section("Answers", [*([Items(list(map(literal, texts)))] if texts else []), _main_table(found)])
+
+
+def _what_differs(found: SweepComparison) -> Section:
     told = literal(found.differences.in_words(found.pairs.first, found.pairs.second))
     first: ReportBlock = (
         Text(told) if len(found.differences.names) < 2 else Notice("warning", "More than one thing differs", told)
     )
     cells = Items([literal(text) for text in found.cells_told()])
-    texts = sentences(found.answers)[1:]
-    return [
-        Section("Answers", [*([Items(list(map(literal, texts)))] if texts else []), _main_table(found)]),
-        Section("What differs", [first, *_difference_tables(found), cells]),
-        Section("Cell by cell", figure_blocks(found, wanted)),
-        Section("Every metric", table_blocks(found, wanted)),
-    ]
+    return Section("What differs", [first, *_difference_tables(found), cells])
 
 
 def _main_table(found: SweepComparison) -> Table:
-    shown = choose_metrics(found, ())
+    shown = _metrics(found, ())
     names = main_metrics([found.pairs.a, found.pairs.b], [one.metric for one in shown])
     return Table(literal(f"Each metric is a separate question. {PAIRS}"),
                  *short_table([one for one in found.answers if one.metric in names]))  # fmt: skip
 
 
-def _caveats(sides: Sequence[Measurements]) -> Section:
+def _caveats(subject: ComparisonSubject) -> Section:
     rows = [
         [side.name, rule, f"{count} of {len(side.hashes)}", text]
-        for side in sides
+        for side in subject.sides
         for rule, count, _, text in side.caveats_by_rule()
     ]
     if not rows:
@@ -139,7 +157,8 @@ def _caveats(sides: Sequence[Measurements]) -> Section:
     return Section("Caveats", (Table(caption, ["sweep", "caveat", *numbers("cells"), "what was found"], rows),))
 
 
-def _made(sides: Sequence[Measurements]) -> Section:
+def _made(subject: ComparisonSubject) -> Section:
+    sides = subject.sides
     blocks: list[ReportBlock] = []
     for side in sides:
         blocks += [Text(f"{side.name} is made by"), Code(side.command)]
@@ -176,11 +195,11 @@ def _difference_tables(found: SweepComparison) -> list[ReportBlock]:
     return blocks
 
 
-def figure_blocks(found: SweepComparison, wanted: Sequence[str]) -> list[ReportBlock]:
+def _by_cell(found: SweepComparison) -> Section:
     """Return a figure of the first metrics that differ, or of the first ones."""
     names = list(dict.fromkeys(one.metric for one in found.answers))
     by_name = {one.metric: one for one in reversed(found.answers)}
-    known = [by_name[name] for name in (wanted or whole_metrics(names)) if name in by_name]
+    known = [by_name[name] for name in (found.wanted or whole_metrics(names)) if name in by_name]
     moved = [one for one in known if any(counts_by_sign(one))] or known
     pairs = found.pairs
     a, b = pairs.first, pairs.second
@@ -193,7 +212,7 @@ def figure_blocks(found: SweepComparison, wanted: Sequence[str]) -> list[ReportB
         "panel is a family of comparisons."
     )
     figure = Curves(literal(f"{caption} Points beyond every number are missing."), panels)
-    return [figure] if many or not _numbered(pairs) else [figure, _cells(pairs)]
+    return Section("Cell by cell", [figure] if many or not _numbered(pairs) else [figure, _cells(pairs)])
 
 
 def _numbered(pairs: Pairs) -> bool:
@@ -235,16 +254,16 @@ def _against(pairs: Pairs, metric: str) -> Panel:
     return Panel(capital(title(metric)), across, up, series, log, log)
 
 
-def choose_metrics(found: SweepComparison, wanted: Sequence[str]) -> list[Answer]:
+def _metrics(found: SweepComparison, wanted: Sequence[str]) -> list[Answer]:
     """Return the pooled answers in the metrics asked for, or in all but those of one direction or joint."""
     by_name = {one.metric: one for one in reversed(found.answers) if not one.at or len(found.pairs) == 1}
     return [by_name[name] for name in (wanted or whole_metrics(by_name)) if name in by_name]
 
 
-def table_blocks(found: SweepComparison, wanted: Sequence[str]) -> list[ReportBlock]:
+def _every_metric(found: SweepComparison) -> Section:
     """Return the method, the table over all cells, and that of those with the largest differences."""
     a, b = found.pairs.first, found.pairs.second
-    whole = choose_metrics(found, wanted)
+    whole = _metrics(found, found.wanted)
     parts = [one for one in found.answers if one not in whole and (not one.at or len(found.pairs) == 1)]
     text = f"The difference is {b} - {a}. {EXPLAINED} {POOLED}"
     tables: list[ReportBlock] = [Text(text)]
@@ -259,7 +278,7 @@ def table_blocks(found: SweepComparison, wanted: Sequence[str]) -> list[ReportBl
         )
         rows = [[label_text(one.at), *_row(one), _median(one.comparison.difference, one.unit)] for one in found.cells]
         tables.append(Table(caption, ["cell", "metric", *numbers(a, b, "difference")], rows))
-    return tables
+    return Section("Every metric", tables)
 
 
 def _table(caption: str, pairs: Pairs, some: Sequence[Answer], folded: bool = False) -> Table:
@@ -276,3 +295,9 @@ def _row(one: AskedComparison) -> list[str]:
 
 def _median(value: float, unit: str) -> str:
     return quantity(value, unit) if math.isfinite(value) else "beyond every number"
+
+
+OF_PAIR = (_answers, _what_differs, _by_cell, _every_metric)
+"""Sections on each comparison with the first side: functions of it that return a section or None."""
+SECTIONS = (_sides, _caveats, _made)
+"""Sections on all sides: functions of the subject that return a section or None; plug-ins add theirs before them."""

@@ -8,12 +8,14 @@ from runner.reporting.answers import PAIRS, Answer
 from runner.reporting.challenge.beside import scope_line
 from runner.reporting.comparison.differences import ConfigDifferences, find_differences
 from runner.reporting.comparison.pairs import match
+from runner.reporting.comparison.report import ComparisonSubject
 from runner.reporting.comparison.sweeps import compare_runs, letter
 from runner.reporting.document import Document, Notice, ReportBlock, Section, Table
 from runner.reporting.markup import literal
 from runner.reporting.metric_titles import title, whole_metrics
 from runner.reporting.overlaid_runs import Level, overlaid
 from runner.reporting.run_report import config_blocks, provenance, run_blocks, run_name
+from runner.reporting.sections import added_sections
 from runner.reporting.sentences import sentences, short_table
 from runner.reporting.spec_blocks import spec_of_several
 from runner.reporting.table import numbers
@@ -52,7 +54,11 @@ def runs_document(runs: Sequence[Run]) -> Document:
         title=(len(runs) == 2 and differences[0].question(*names)) or f"{len(runs)} runs compared",
         subtitle=literal("; ".join(f"{name}: {run_name(run)}" for name, run in zip(names, runs, strict=True))),
         abstract=literal("\n".join(map(one_line, [*failed, *lines]))),
-        sections=[Section("Side by side", _side_by_side(runs, names, differences, compared[0])), *details],
+        sections=[
+            Section("Side by side", _side_by_side(runs, names, differences, compared[0])),
+            *added_sections("comparison", ComparisonSubject(sides)),
+            *details,
+        ],
         date=max(str(run.provenance["date"]) for run in runs),
         shown=1,
     )

@@ -51,6 +51,7 @@ class SweepComparison:
         answers: Each metric over all cells, unless that describes none of them, and in each cell.
         cells: The cells with the largest differences in a metric, relative to its size; the largest first.
         candidates: Number of cells and metrics that these were chosen from.
+        wanted: Metrics that were asked for; empty for all.
     """
 
     pairs: Pairs
@@ -58,6 +59,7 @@ class SweepComparison:
     answers: Sequence[Answer]
     cells: Sequence[AskedComparison]
     candidates: int
+    wanted: Sequence[str] = ()
 
     def cells_told(self) -> Iterator[str]:
         """Yield which cells are compared, and which are not and why."""
@@ -120,7 +122,8 @@ def compare_sweeps(a: Measurements, b: Measurements, metrics: Sequence[str] = ()
     names = list(dict.fromkeys(metrics)) or both
     cells, candidates = _movements(pairs, list(metrics) or [name for name in names if not is_part(name)])
     by_cell = list(pairs.each()) if 1 < len(pairs) <= MOST_CONDITIONS else []
-    return SweepComparison(pairs, find_differences(pairs), answer([pairs, *by_cell], names, metrics), cells, candidates)
+    answers = answer([pairs, *by_cell], names, metrics)
+    return SweepComparison(pairs, find_differences(pairs), answers, cells, candidates, metrics)
 
 
 def compare_levels(

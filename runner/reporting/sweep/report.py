@@ -66,7 +66,7 @@ def sweep_document(sweep: Sweep, metrics: Sequence[str] = (), runs_address: str 
     """
     chosen = choose(measure_sweep(sweep), metrics)
     subject = SweepSubject(chosen.measurements, chosen.metrics, sweep, runs_address)
-    first = [*make_sections(FIRST, subject), *added_sections("sweep_section", subject)]
+    first = [*make_sections(FIRST, subject), *added_sections("sweep", subject)]
     return Document(
         title=_title(subject),
         subtitle=", ".join(subject.measurements.fixed),

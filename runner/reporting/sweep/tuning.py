@@ -21,7 +21,7 @@ from runner.reporting.figures import cover
 from runner.reporting.markup import literal
 from runner.reporting.metric_titles import metric_label, title
 from runner.reporting.overlaid_runs import Level
-from runner.reporting.sections import make_sections
+from runner.reporting.sections import added_sections, make_sections
 from runner.reporting.sentences import sentences
 from runner.reporting.sweep.cells import caveats_section, failed_table
 from runner.reporting.sweep.distributions import motion_blocks
@@ -40,14 +40,16 @@ _MOST_ROWS = 20
 
 
 @dataclass(frozen=True)
-class Trials:
-    """The trials of a tuning as its report looks at them.
+class TuningSubject:
+    """A tuning as its report looks at it: the subject of the sections of the report.
 
     Attributes:
         tuning: The tuning.
+        runs_address: Address of the folder of runs, seen from the report, ending in a slash.
     """
 
     tuning: Tuning
+    runs_address: str = ""
 
     @property
     def keys(self) -> Sequence[TunedKey]:
@@ -68,6 +70,34 @@ class Trials:
     def best(self) -> list[int]:
         """Numbers of the best trials: one, or the Pareto front."""
         return best(self.tuning.trials, self.objectives)
+
+    @cached_property
+    def made(self) -> list[int]:
+        """Numbers of the trials that have a run."""
+        return [place for place, trial in enumerate(self.tuning.trials) if trial.run]
+
+    @cached_property
+    def sweep(self) -> Sweep:
+        """The runs of the trials, as a sweep."""
+        trials = [self.tuning.trials[place] for place in self.made]
+        overrides = [self.tuning.study.trial_overrides(trial) for trial in trials]
+        return Sweep(self.tuning.folder, overrides, [trial.run for trial in trials], self.tuning.study.command)
+
+    @cached_property
+    def measurements(self) -> Measurements:
+        """Metrics of these runs."""
+        return measure_sweep(self.sweep)
+
+    @cached_property
+    def chosen(self) -> dict[int, Run]:
+        """The run of each chosen trial; empty if none is good."""
+        places = self.best_by_objective() if self.good else {}
+        return {place: open_run(self.sweep.outputs / "runs" / self.tuning.trials[place].run) for place in places}
+
+    @cached_property
+    def on_fresh_seed(self) -> tuple[list[Answer], list[str]]:
+        """The tuned config compared with the default one, and that in sentences; see compare_on_fresh_seed."""
+        return compare_on_fresh_seed(self.tuning)
 
     def values(self, place: int) -> FloatArray:
         """Return the value of an objective in each trial, shape (trials,)."""
@@ -115,48 +145,29 @@ def tuning_document(tuning: Tuning, folder: Path) -> Document:
     Raises:
         StoreError: If a run is missing or damaged.
     """
-    trials = Trials(tuning)
-    made = [place for place, trial in enumerate(tuning.trials) if trial.run]
-    overrides = [tuning.study.trial_overrides(tuning.trials[place]) for place in made]
-    sweep = Sweep(tuning.folder, overrides, [tuning.trials[place].run for place in made], tuning.study.command)
-    measurements = measure_sweep(sweep)
-    answers, texts = compare_on_fresh_seed(tuning)
+    subject = TuningSubject(tuning, f"{os.path.relpath(tuning.folder.parents[1] / 'runs', folder)}/")
+    answers, texts = subject.on_fresh_seed
     texts = [*texts[:1], *filter(None, [scope_line(answers, [tuning.folder])]), *texts[1:]]
-    compared = [Section("Default and tuned on a fresh seed", answer_blocks(answers))] if answers else []
-    sections, shown = [*compared, _what(trials)], None
-    if trials.good:
-        sections.append(history_section(trials))
-        sections += [_front(trials)] if len(trials.objectives) > 1 else []
-        runs = {
-            place: open_run(sweep.outputs / "runs" / tuning.trials[place].run) for place in trials.best_by_objective()
-        }
-        sections += [_keys(trials), _chosen(trials, runs)]
-        first = next(iter(runs))
-        shown = cover(runs[first], f"The motion of trial {first}, the chosen one.")
-    if len(trials.good) < len(tuning.trials):
-        rows = [
-            [str(place), trial.run[:8] or "–", trials.settings(place), trial.failure]
-            for place, trial in enumerate(tuning.trials)
-            if trial.failure
-        ]
-        sections.append(
-            Section("Failed trials", (failed_table("trials", ["trial", "run", "values", "failure"], rows),))
-        )
-    sections += [
-        *make_sections([caveats_section], Subject(measurements, ())),
-        _all_runs(trials, sweep, made, measurements, folder),
-        made_by(measurements, ("tuning", tuning.folder.name)),
-    ]
-    goals = " and ".join(f"{objective.direction} the {title(objective.metric)}" for objective in trials.objectives)
+    first = next(iter(subject.chosen), None)
+    goals = " and ".join(f"{objective.direction} the {title(objective.metric)}" for objective in subject.objectives)
     return Document(
         title=f"Tuning to {goals}",
         subtitle=", ".join(tuning.study.overrides),
-        abstract=literal("\n".join([*texts, _abstract(trials)])),
-        sections=sections,
-        date=max(measurements.provenance.get("made on", [""])),
-        cover=shown,
-        key_numbers=_key_numbers(trials),
+        abstract=literal("\n".join([*texts, _abstract(subject)])),
+        sections=[
+            *make_sections(FIRST, subject),
+            *added_sections("tuning", subject),
+            *make_sections(DETAILS, subject),
+        ],
+        date=max(subject.measurements.provenance.get("made on", [""])),
+        cover=None if first is None else cover(subject.chosen[first], f"The motion of trial {first}, the chosen one."),
+        key_numbers=_key_numbers(subject),
     )
+
+
+def _compared(subject: TuningSubject) -> Section | None:
+    answers, _ = subject.on_fresh_seed
+    return Section("Default and tuned on a fresh seed", answer_blocks(answers)) if answers else None
 
 
 def compare_on_fresh_seed(tuning: Tuning) -> tuple[list[Answer], list[str]]:
@@ -177,37 +188,39 @@ def compare_on_fresh_seed(tuning: Tuning) -> tuple[list[Answer], list[str]]:
     return answers, [*texts[:1], *failed, drawn, *texts[1:]]
 
 
-def _key_numbers(trials: Trials) -> list[tuple[str, str, str]]:
+def _key_numbers(subject: TuningSubject) -> list[tuple[str, str, str]]:
     """Return the number of trials, and the chosen value of each objective with the keys that give it."""
-    count = len(trials.tuning.trials)
-    failed = count - len(trials.good)
+    count = len(subject.tuning.trials)
+    failed = count - len(subject.good)
     numbers = [("trials", str(count), f"{failed} of them failed" if failed else "none failed")]
-    for place, objectives in (trials.best_by_objective() if trials.good else {}).items():
+    for place, objectives in (subject.best_by_objective() if subject.good else {}).items():
         for objective in objectives:
-            value = trials.tuning.trials[place].values[list(trials.objectives).index(objective)]
-            chosen = f"trial {place}: {trials.settings(place)}"
+            value = subject.tuning.trials[place].values[list(subject.objectives).index(objective)]
+            chosen = f"trial {place}: {subject.settings(place)}"
             numbers.append((f"{title(objective.metric)}, chosen", quantity(value, objective.unit), chosen))
     return numbers
 
 
 def summary_of_tuning(tuning: Tuning) -> str:
     """Return the choice of a tuning in a sentence; empty if no trial is good."""
-    trials = Trials(tuning)
-    if len(trials.best) > 1:
-        return f"{len(trials.best)} trials are on the Pareto front."
-    return "".join(f"Trial {place}: {trials.outcome(place)}, with {trials.settings(place)}." for place in trials.best)
+    subject = TuningSubject(tuning)
+    if len(subject.best) > 1:
+        return f"{len(subject.best)} trials are on the Pareto front."
+    return "".join(
+        f"Trial {place}: {subject.outcome(place)}, with {subject.settings(place)}." for place in subject.best
+    )
 
 
-def _abstract(trials: Trials) -> str:
-    names = ", ".join(key.name for key in trials.keys)
-    count = len(trials.tuning.trials)
-    texts = [f"{count} trials over {names}; {count - len(trials.good)} of them failed."]
-    chosen = summary_of_tuning(trials.tuning)
-    texts += [f"Chosen is t{chosen[1:]}" if len(trials.best) == 1 else chosen, *at_ends(trials.tuning)]
+def _abstract(subject: TuningSubject) -> str:
+    names = ", ".join(key.name for key in subject.keys)
+    count = len(subject.tuning.trials)
+    texts = [f"{count} trials over {names}; {count - len(subject.good)} of them failed."]
+    chosen = summary_of_tuning(subject.tuning)
+    texts += [f"Chosen is t{chosen[1:]}" if len(subject.best) == 1 else chosen, *at_ends(subject.tuning)]
     return " ".join(filter(None, texts))
 
 
-def _what(trials: Trials) -> Section:
+def _what(subject: TuningSubject) -> Section:
     rows = [
         [
             key_label(key),
@@ -216,9 +229,9 @@ def _what(trials: Trials) -> Section:
             "logarithmic" if key.log else "linear",
             "any" if key.step is None and not key.integer else f"by {number(key.step or 1)}",
         ]
-        for key in trials.keys
+        for key in subject.keys
     ]
-    study = trials.tuning.study
+    study = subject.tuning.study
     text = Text(
         "The first ten trials cover the ranges evenly; each later one follows from those before it (tree-structured "
         f"Parzen estimator of Optuna), {study.at_once} of them under way at once. Of a metric the median over the "
@@ -229,24 +242,26 @@ def _what(trials: Trials) -> Section:
         Table("Tuned keys with their ranges.", header, rows, Origin(command=study.command)),
         text,
     ]
-    failed = len(trials.tuning.trials) - len(trials.good)
+    failed = len(subject.tuning.trials) - len(subject.good)
     if failed:
         told = "They rank behind all others, so that the search keeps away from them; a separate section lists them."
-        blocks.append(Notice("failure", f"{failed} of {len(trials.tuning.trials)} trials failed", told))
+        blocks.append(Notice("failure", f"{failed} of {len(subject.tuning.trials)} trials failed", told))
     return Section("What was tuned", blocks)
 
 
-def history_section(trials: Trials) -> Section:
-    """Return the history of each objective, with the chosen value so far."""
-    numbers = np.arange(len(trials.tuning.trials), dtype=float)
+def history_section(subject: TuningSubject) -> Section | None:
+    """Return the history of each objective, with the chosen value so far; None without a good trial."""
+    if not subject.good:
+        return None
+    numbers = np.arange(len(subject.tuning.trials), dtype=float)
     panels = []
-    for index, objective in enumerate(trials.objectives):
-        values = trials.values(index)
-        drawn = trials.points("trials", numbers, values, trials.good)
+    for index, objective in enumerate(subject.objectives):
+        values = subject.values(index)
+        drawn = subject.points("trials", numbers, values, subject.good)
         so_far = objective.sign * np.minimum.accumulate(objective.sign * drawn.y)
         series = [drawn, Series("chosen so far", drawn.x, so_far, "line")]
         panels.append(Panel("", "trial", _label(objective), series, y_log=spans_decades(drawn.y)))
-    failed = len(numbers) - len(trials.good)
+    failed = len(numbers) - len(subject.good)
     without = f" {failed} failed trials have no point." if failed else ""
     return Section("History", [Curves(f"Each good trial, and the chosen value so far.{without}", panels)])
 
@@ -255,24 +270,26 @@ def _label(objective: Objective) -> str:
     return metric_label(objective.metric, objective.unit)
 
 
-def _front(trials: Trials) -> Section:
+def _front(subject: TuningSubject) -> Section | None:
     """Return the front, a figure for each pair of objectives, and its trials; of a long front some along all of it."""
-    objectives, front = trials.objectives, trials.best
+    if not subject.good or len(subject.objectives) == 1:
+        return None
+    objectives, front = subject.objectives, subject.best
     panels = []
     for a, b in combinations(range(len(objectives)), 2):
-        x, y = trials.values(a), trials.values(b)
-        series = [trials.points("trials", x, y, trials.good), trials.points("front", x, y, front)]
-        logs = spans_decades(x[trials.good]), spans_decades(y[trials.good])
+        x, y = subject.values(a), subject.values(b)
+        series = [subject.points("trials", x, y, subject.good), subject.points("front", x, y, front)]
+        logs = spans_decades(x[subject.good]), spans_decades(y[subject.good])
         panels.append(Panel("", _label(objectives[a]), _label(objectives[b]), series, *logs))
     rows = []
     for place in (front[index] for index in spaced_indices(len(front), _MOST_ROWS)):
-        found = trials.tuning.trials[place]
+        found = subject.tuning.trials[place]
         values = zip(objectives, found.values, strict=True)
-        settings = [number(found.params[key.name]) for key in trials.keys]
+        settings = [number(found.params[key.name]) for key in subject.keys]
         rows.append([str(place), *(quantity(value, objective.unit) for objective, value in values), *settings])
-    header = numbers("trial", *(title(each.metric) for each in objectives), *(key.name for key in trials.keys))
+    header = numbers("trial", *(title(each.metric) for each in objectives), *(key.name for key in subject.keys))
     text = (
-        f"The front has {len(front)} of {len(trials.good)} good trials: none of them gets better in one objective "
+        f"The front has {len(front)} of {len(subject.good)} good trials: none of them gets better in one objective "
         "without another getting worse."
     )
     blocks: list[ReportBlock] = [
@@ -283,72 +300,100 @@ def _front(trials: Trials) -> Section:
     return Section("Trade-off", blocks)
 
 
-def _keys(trials: Trials) -> Section:
+def _keys(subject: TuningSubject) -> Section | None:
+    if not subject.good:
+        return None
     panels = []
-    for index, objective in enumerate(trials.objectives):
-        y = trials.values(index)
-        for key in trials.keys:
-            x = trials.params(key)
-            series = [trials.points("trials", x, y, trials.good), trials.points("chosen", x, y, trials.best)]
-            limits, logs = (key.low, key.high), (key.log, spans_decades(y[trials.good]))
+    for index, objective in enumerate(subject.objectives):
+        y = subject.values(index)
+        for key in subject.keys:
+            x = subject.params(key)
+            series = [subject.points("trials", x, y, subject.good), subject.points("chosen", x, y, subject.best)]
+            limits, logs = (key.low, key.high), (key.log, spans_decades(y[subject.good]))
             panels.append(Panel("", key_label(key), _label(objective), series, *logs, limits))
-    return Section("Keys", [Curves("Good trials over the range of each key.", panels), _importance(trials)])
+    return Section("Keys", [Curves("Good trials over the range of each key.", panels), _importance(subject)])
 
 
-def _importance(trials: Trials) -> ReportBlock:
+def _importance(subject: TuningSubject) -> ReportBlock:
     from runner.sweeps.tuning.sampler import importances  # imports Optuna
 
     found = [
-        importances(trials.keys, trials.tuning.trials, objective, place)
-        for place, objective in enumerate(trials.objectives)
+        importances(subject.keys, subject.tuning.trials, objective, place)
+        for place, objective in enumerate(subject.objectives)
     ]
     if not all(found):
         return Text("Of fewer than 20 good trials it cannot be said which key matters.")
-    rows = [[key.name, *(f"{100 * shares[key.name]:.0f} %" for shares in found)] for key in trials.keys]
+    rows = [[key.name, *(f"{100 * shares[key.name]:.0f} %" for shares in found)] for key in subject.keys]
     caption = (
         "Importance of the keys: how far the values of each in the leading tenth of the good trials differ from those "
         "among all of them, in shares (PED-ANOVA). Where trials crowd, it says what still decides there."
     )
-    return Table(caption, ["key", *numbers(*(title(objective.metric) for objective in trials.objectives))], rows)
+    return Table(caption, ["key", *numbers(*(title(objective.metric) for objective in subject.objectives))], rows)
 
 
-def _chosen(trials: Trials, runs: dict[int, Run]) -> Section:
-    one = len(trials.objectives) == 1
+def _chosen(subject: TuningSubject) -> Section | None:
+    if not subject.good:
+        return None
+    one = len(subject.objectives) == 1
     sections = []
-    for place, objectives in trials.best_by_objective().items():
+    for place, objectives in subject.best_by_objective().items():
         best_in = ", ".join(f"{objective.direction} the {title(objective.metric)}" for objective in objectives)
         head = f"Trial {place}" if one else f"Trial {place}: {best_in}"
-        sections.append(Section(head, _trial(trials, place, runs[place])))
+        sections.append(Section(head, _trial(subject, place, subject.chosen[place])))
     return Section("Chosen trial" if one else "Chosen by each objective", (), sections)
 
 
-def _trial(trials: Trials, place: int, run: Run) -> list[ReportBlock]:
-    params = trials.tuning.trials[place].params
+def _trial(subject: TuningSubject, place: int, run: Run) -> list[ReportBlock]:
+    params = subject.tuning.trials[place].params
     rows = [
-        [key_label(key), number(params[key.name]), f"{number(key.low)} to {number(key.high)}"] for key in trials.keys
+        [key_label(key), number(params[key.name]), f"{number(key.low)} to {number(key.high)}"] for key in subject.keys
     ]
-    goals = [objective.metric for objective in trials.objectives]
+    goals = [objective.metric for objective in subject.objectives]
     names = dict.fromkeys([*goals, *(name for name in run.metrics if name in units())])
     metrics = [[title(name), run.metrics[name].text] for name in names]
     told = "Medians, in brackets smallest and largest over the repetitions."
     return [
-        Table("Tuned keys.", ["key", *numbers("value", "range")], rows, Origin(command=trials.command(place))),
+        Table("Tuned keys.", ["key", *numbers("value", "range")], rows, Origin(command=subject.command(place))),
         *motion_blocks([Level("", [run], 0)]),
         Table(told, ["metric", *numbers("value")], metrics),
     ]
 
 
-def _all_runs(trials: Trials, sweep: Sweep, made: list[int], measurements: Measurements, folder: Path) -> Section:
-    goals = [objective.metric for objective in trials.objectives if objective.metric in measurements.values]
+def _failed(subject: TuningSubject) -> Section | None:
+    rows = [
+        [str(place), trial.run[:8] or "–", subject.settings(place), trial.failure]
+        for place, trial in enumerate(subject.tuning.trials)
+        if trial.failure
+    ]
+    table = failed_table("trials", ["trial", "run", "values", "failure"], rows)
+    return Section("Failed trials", (table,)) if rows else None
+
+
+def _caveats(subject: TuningSubject) -> Section | None:
+    return caveats_section(Subject(subject.measurements, ()))
+
+
+def _all_runs(subject: TuningSubject) -> Section:
+    measurements, made = subject.measurements, subject.made
+    goals = [objective.metric for objective in subject.objectives if objective.metric in measurements.values]
     metrics = [(name, measurements.units[name], measurements.medians(name)) for name in measurements.values]
     columns = [
         ("trial", "1", np.array(made, dtype=float)),
         *(next(column for column in metrics if column[0] == name) for name in goals),
-        *((key.name, key.unit, trials.params(key)[made]) for key in trials.keys),
+        *((key.name, key.unit, subject.params(key)[made]) for key in subject.keys),
         *(column for column in metrics if column[0] not in goals),
     ]
-    address = f"{os.path.relpath(sweep.outputs / 'runs', folder)}/"
-    failures = [trials.tuning.trials[place].failure for place in made]
+    failures = [subject.tuning.trials[place].failure for place in made]
     caption = "All runs, in the order of the trials; medians of each."
     text = Text("In the HTML report a click on a point, here or in any figure, shows its run.")
-    return Section("All runs", (text, list_runs(sweep, caption, range(len(made)), columns, failures, address)))
+    listing = list_runs(subject.sweep, caption, range(len(made)), columns, failures, subject.runs_address)
+    return Section("All runs", (text, listing))
+
+
+def _provenance(subject: TuningSubject) -> Section:
+    return made_by(subject.measurements, ("tuning", subject.tuning.folder.name))
+
+
+FIRST = (_compared, _what, history_section, _front, _keys, _chosen)
+DETAILS = (_failed, _caveats, _all_runs, _provenance)
+"""Sections before and after those of plug-ins: functions of the subject that return a section or None."""

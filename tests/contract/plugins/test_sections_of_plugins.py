@@ -31,7 +31,7 @@ FAULTS = {
     "import nowhere\n": (
         r"section own: module own cannot be imported: ModuleNotFoundError: .* \(own.py, line 1, in <module>\)\."
     ),
-    "section = None\n": r"section own: module own needs run_section or sweep_section\.",
+    "section = None\n": r"section own: module own needs one of run_section, .*, identification_section\.",
 }
 
 
@@ -43,7 +43,7 @@ def finished(runs):
 @pytest.mark.parametrize("module", FAULTS)
 def test_a_section_that_fails_is_named(own_part, finished, module):
     own_part("section", "own", module)
-    (section,) = added_sections("run_section", RunSubject(finished))
+    (section,) = added_sections("run", RunSubject(finished))
     (notice,) = section.blocks
     assert isinstance(notice, Notice)
     assert (notice.kind, notice.title) == ("failure", "The section of plug-in own failed")
@@ -66,7 +66,7 @@ def test_a_section_of_runs_leaves_sweeps_as_they_are(own_part, sweep12):
 
 def test_a_section_receives_a_copy(own_part, finished):
     own_part("section", "own", "def run_section(subject):\n    subject.run.record.clear()\n")
-    assert added_sections("run_section", RunSubject(finished)) == []
+    assert added_sections("run", RunSubject(finished)) == []
     assert finished.record
 
 

@@ -9,7 +9,7 @@ import pytest
 from runner.base.errors import StoreError
 from runner.reporting.document import Curves, Notice, Playback, RunList, Table, Text
 from runner.reporting.markup import literal
-from runner.reporting.sweep.tuning import Trials, history_section, tuning_document
+from runner.reporting.sweep.tuning import TuningSubject, history_section, tuning_document
 from runner.sweeps.tuning.objective import Objective, Trial
 from runner.sweeps.tuning.run import tune
 from runner.sweeps.tuning.study import at_ends
@@ -106,7 +106,7 @@ def test_the_first_paragraph_says_which_key_ends_at_the_end_of_its_range(tuning)
 
 
 def test_the_history_never_gets_worse(tuning):
-    less, more = blocks(history_section(Trials(tuning)), Curves)[0].panels
+    less, more = blocks(history_section(TuningSubject(tuning)), Curves)[0].panels
     for panel, sign in ((less, 1.0), (more, -1.0)):
         trials, so_far = panel.series
         assert (np.diff(sign * so_far.y) <= 0).all()
@@ -118,7 +118,7 @@ def test_the_front_holds_what_its_table_lists(tuning):
     part = section(document(tuning), "Trade-off")
     _, front = blocks(part, Curves)[0].panels[0].series
     (table,) = blocks(part, Table)
-    assert [int(row[0]) for row in table.rows] == Trials(tuning).best
+    assert [int(row[0]) for row in table.rows] == TuningSubject(tuning).best
     assert len(front.x) == len(table.rows) > 1
     assert (np.diff(front.x) > 0).all()
     assert (np.diff(front.y) > 0).all()  # less of one costs more of the other
