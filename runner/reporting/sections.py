@@ -18,7 +18,7 @@ if TYPE_CHECKING:
 
 S = TypeVar("S")
 
-_KINDS = ("run", "sweep", "comparison", "tuning", "challenge", "recording", "identification")  # of reports that plug-ins add to
+_REPORTS = ("run", "sweep", "comparison", "tuning", "challenge", "recording", "identification")  # that plug-ins add to
 
 
 @dataclass(frozen=True)
@@ -58,7 +58,7 @@ def added_sections(kind: str, subject: Any) -> list[Section]:
 def _added(plugin: str, module: str, kind: str, subject: Any) -> Iterator[Section]:
     try:
         members, name = vars(load("section", plugin, module)), f"{kind}_section"
-        known = [f"{each}_section" for each in _KINDS]
+        known = [f"{each}_section" for each in _REPORTS]
         if members.keys().isdisjoint(known):
             raise ConfigError(f"section {plugin}: module {module} needs one of {', '.join(known)}")
         made = members[name](copy.deepcopy(replace(subject))) if name in members else None

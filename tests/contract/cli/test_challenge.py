@@ -340,3 +340,9 @@ def test_without_a_conclusion_there_is_no_scope(cli):
     folders = [runner.run(*TASK[:-1], "repetitions=2", f"seed={seed}").folder for seed in (0, 1)]
     assert "hallenge" not in cli("compare", *folders).out
     assert "hallenge" not in compose_report(folders)[0].abstract
+
+
+def test_a_section_of_a_plug_in_is_before_the_provenance(ended, own_section, tmp_path):
+    own_section("challenge", "f'{len(subject.sweep.hashes)} runs'")
+    *_, own, _ = compose_report([ended.folder], output=tmp_path)[0].sections
+    assert own.blocks[0].text.endswith(" runs")

@@ -225,3 +225,9 @@ def test_a_log_of_positions_alone_is_not_replayed(cli, tmp_path):
     assert ending.code == 2
     assert "has neither commanded positions nor torques, so that a replay says nothing" in ending.err
     assert not (tmp_path / "outputs").exists()
+
+
+def test_a_section_of_a_plug_in_is_before_the_provenance(found, own_section):
+    own_section("recording", "f'{len(subject.residuals)} residuals'")
+    *_, own, _ = recording_document(found).sections
+    assert own.blocks[0].text == f"{len(found.residuals)} residuals"

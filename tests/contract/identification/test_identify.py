@@ -12,7 +12,7 @@ from support.identified_logs import KnownArm, write_log
 import runner
 from runner.identification.result import open_identification
 from runner.recordings.columns_map import FixedPayload
-from runner.reporting.identification_report import parameters
+from runner.reporting.identification_report import identification_document, parameters
 from runner.reporting.mathml import faulty
 from runner.reporting.stored import compose_report
 
@@ -261,3 +261,9 @@ def test_joints_in_another_order_are_asked_for(arm, log, tmp_path, cli):
     ending = cli("identify", path, "--columns", columns, "--robot", "macro")
     assert ending.code == 2
     assert "exchanged" in ending.err
+
+
+def test_a_section_of_a_plug_in_is_before_the_method(made, own_section):
+    own_section("identification", "subject.robot")
+    *_, own, _ = identification_document(made[2]).sections
+    assert own.blocks[0].text == "macro"

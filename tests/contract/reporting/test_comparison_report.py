@@ -7,6 +7,7 @@ import pytest
 from support.sample_sides import LAWS, side
 
 from runner.reporting.comparison.report import comparison_document
+from runner.reporting.comparison.runs import runs_document
 from runner.reporting.document import Code, Curves, Notice, Provenance, Table, Text
 from runner.reporting.render import write_report
 
@@ -149,3 +150,11 @@ def test_what_is_the_same_in_both_is_one_row_of_the_provenance():
     assert ("seed", "1") in found.rows
     assert {("commit, A", "a"), ("commit, B", "b")} <= set(found.rows)
     assert not {"seed, A", "commit"} & {name for name, _ in found.rows}
+
+
+def test_a_section_of_a_plug_in_is_before_the_details(own_section, runs):
+    own_section("comparison", "' and '.join(side.name for side in subject.sides)")
+    titles = [section.title for section in comparison_document(pair()).sections]
+    assert titles[3:6] == ["Every metric", "Own", "The sweeps"]
+    first, own, *_ = runs_document([runs["goal"], runs["other seed"]]).sections
+    assert (first.title, own.blocks) == ("Side by side", (Text("A and B"),))

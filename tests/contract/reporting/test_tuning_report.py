@@ -179,3 +179,10 @@ def test_a_run_that_is_gone_is_told(tuning, monkeypatch):
     gone = replace(tuning, trials=[*tuning.trials, replace(tuning.trials[0], run="0" * 24)])
     with pytest.raises(StoreError, match=r"1 of 23 cells of .* are not stored; continue with: runner tune "):
         document(gone)
+
+
+def test_a_section_of_a_plug_in_is_before_the_details(own_section, tuning):
+    own_section("tuning", "f'{len(subject.good)} of {len(subject.made)}'")
+    made = document(tuning)
+    assert section(made, "Own").blocks[0].text == "22 of 22"
+    assert titles(made)[-4:] == ["Own", "Caveats", "All runs", "Provenance"]
