@@ -1,9 +1,9 @@
 """JSON Schema of configs, with which an editor completes keys and shows their meaning and unit."""
 
-import functools
 import inspect
 import re
 from collections.abc import Mapping
+from functools import lru_cache
 from typing import Annotated, Any
 
 from pydantic import TypeAdapter
@@ -85,7 +85,7 @@ def _properties(model: type[StrictModel]) -> dict[str, Any]:
     return {name: _property(model, name, told.get(name, "")) for name in model.model_fields}
 
 
-@functools.cache
+@lru_cache(maxsize=2048)
 def _property(model: type[StrictModel], name: str, meaning: str) -> dict[str, Any]:
     field = model.model_fields[name]
     inner = nested_model(field.annotation)
