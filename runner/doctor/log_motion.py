@@ -16,6 +16,7 @@ from runner.trajectories.splines import interpolate
 
 _STEP = 0.01  # s between rows, at least
 _REST = 0.02  # of the largest speed: what is slower at an end is at rest
+_OVER, _OF_NOISE = 0.15, 6.0  # s in which it moves by more than 6 times the rms of the noise
 _LEAD = 0.5  # s, in which a log that begins or ends in motion comes from rest or goes to it
 _MARGIN = 1e-3  # of a joint's range, kept from its limits
 _MOST = 40_000  # rows that are looked at
@@ -57,23 +58,24 @@ def make_motion(model: RobotModel, recording: Recording) -> LogMotion | None:
         _STEP, period, (recording.duration + 2.0 * _LEAD) * (model.nq + 1) / (TABLE_NUMBERS.most - 10 * model.nq)
     )
     notes: list[str] = []
-    frequency, filtered = min(cutoff(period), 0.4 / step), not commanded
+    frequency = min(cutoff(period), 0.4 / step)
     while True:
-        smooth = low_pass(exact, period, frequency) if filtered else exact
-        t, rows = _rest_to_rest(times, smooth, step)
+        smooth = low_pass(exact, period, frequency)
+        noise = _noise(exact - smooth, period * frequency)
+        t, rows = _rest_to_rest(times, smooth, noise, step)
         rows, clipped = _inside(model, rows)
         curve = interpolate(t, rows[:, None], "spline")
         speeds = curve.orders[1](np.linspace(0.0, t[-1], 4 * len(t)))
         fast = float((np.abs(speeds).max(axis=0) / model.velocity_limits).max())
         if fast < 1.0 or frequency * _LOWER < _LOWEST:
             break
-        frequency, filtered = frequency * (_LOWER if filtered else 1.0), True
-    moving = _in_motion(times, smooth)
+        frequency *= _LOWER
+    moving = _in_motion(times, smooth, noise)
     off = np.abs(curve.orders[0](times - times[0] + _LEAD * moving[0]) - exact).max(axis=0)
     worst = int(np.argmax(off / np.maximum(np.ptp(exact, axis=0), 1e-9)))
     unit = model.joint_units[worst]
     notes.append(
-        f"{len(t)} rows, {quantity(step, 's')} apart{f', smoothed at {frequency:.2g} Hz' if filtered else ''}; they "
+        f"{len(t)} rows, {quantity(step, 's')} apart, smoothed at {frequency:.2g} Hz; they "
         f"differ from the log by up to {quantity(float(off[worst]), unit)} at {model.joint_names[worst]}"
     )
     if any(moving):
@@ -87,18 +89,33 @@ def make_motion(model: RobotModel, recording: Recording) -> LogMotion | None:
     return LogMotion(csv_text(cells), len(t), commanded, tuple(notes))
 
 
-def _in_motion(times: FloatArray, q: FloatArray) -> tuple[bool, bool]:
-    speeds = np.abs(np.gradient(q, times, axis=0))
-    least = _REST * max(float(speeds.max()), 1e-12)
-    return bool(speeds[0].max() > least), bool(speeds[-1].max() > least)
+def _noise(removed: FloatArray, share: float) -> FloatArray:
+    """Return the rms of white noise that a low-pass leaves, shape (nq,).
+
+    Args:
+        removed: What it removed, shape (N, nq).
+        share: Its cut-off as a share of the rate.
+    """
+    noise: FloatArray = np.sqrt(np.mean(removed**2, axis=0) * 2.0 * share)
+    return noise
 
 
-def _rest_to_rest(times: FloatArray, q: FloatArray, step: float) -> tuple[FloatArray, FloatArray]:
+def _in_motion(times: FloatArray, q: FloatArray, noise: FloatArray) -> tuple[bool, bool]:
+    """Return whether a motion begins and ends in motion: whether means over _OVER differ by more than noise."""
+    rows = min(len(times) // 2, max(1, round(_OVER / (times[1] - times[0]))))
+    means = np.diff(np.cumsum(np.vstack([0.0 * q[:1], q]), axis=0)[::rows], axis=0) / rows
+    steps = np.abs(np.diff(means, axis=0))
+    last = np.abs(q[-rows:].mean(axis=0) - q[-2 * rows : -rows].mean(axis=0))
+    least = np.maximum(_REST * max(float(steps.max()), 1e-12), _OF_NOISE * noise)
+    return bool((steps[0] > least).any()), bool((last > least).any())
+
+
+def _rest_to_rest(times: FloatArray, q: FloatArray, noise: FloatArray, step: float) -> tuple[FloatArray, FloatArray]:
     """Return even rows of a motion, with a way from rest before a log that begins in motion, and one to rest after it.
 
     On that way the speed grows or falls as a smooth step, so that positions change by half of speed times duration.
     """
-    first, last = _in_motion(times, q)
+    first, last = _in_motion(times, q, noise)
     count = max(3, int(np.ceil((times[-1] - times[0]) / step)) + 1)
     even = np.linspace(times[0], times[-1], count)
     rows = [evenly(times, q, even)]

@@ -179,7 +179,8 @@ class ColumnsMap(StrictModel):
         rate: Rows in a second, in Hz; if there is a column of time, both must agree.
         columns: What each column holds, by its name; columns that are not named are not read.
         torque: held if a torque acts from its row to the next one, as a controller commands it: it is centred, half a
-            row later; instant if it was measured at the time of its row.
+            row later; instant if it was measured at the time of its row; None for instant of sensors on the link side,
+            else held.
         topic: Of a ROS bag: the topic of its joint states; None if it has only one.
         episode: Of a LeRobot data set: the episode; None for its longest.
         warmth: Temperature of the arm in this log, cold or warm; None if it is not known.
@@ -189,7 +190,7 @@ class ColumnsMap(StrictModel):
     time: TimeColumn | None = None
     rate: PositiveFloat | None = None
     columns: dict[str, MappedColumn] = Field(min_length=1)
-    torque: Literal["held", "instant"] = "held"
+    torque: Literal["held", "instant"] | None = None
     topic: str | None = None
     episode: NonNegativeInt | None = None
     warmth: Literal["cold", "warm"] | None = None
@@ -232,7 +233,8 @@ class ColumnsMap(StrictModel):
     @property
     def held(self) -> bool:
         """Whether a torque acts from its row to the next one."""
-        return self.torque == "held" or self.holds == "commanded"
+        usual = "instant" if self.side == "link" else "held"
+        return self.holds == "commanded" or (self.torque or usual) == "held"
 
     def loaded(self, model: RobotModel) -> RobotModel:
         """Return an arm with the payload of this log."""

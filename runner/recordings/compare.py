@@ -5,12 +5,11 @@ from dataclasses import dataclass, replace
 from pathlib import Path
 
 import numpy as np
-import pinocchio as pin
 
 from runner.base.arrays import FloatArray
 from runner.base.errors import RunnerError
 from runner.recordings.columns_map import ColumnsMap, Signal, other_units, read_map
-from runner.recordings.consistency import check_consistency
+from runner.recordings.consistency import check_consistency, measured_arm
 from runner.recordings.friction import Friction, identify_friction
 from runner.recordings.offset import Offset, find_lag, find_offset
 from runner.recordings.recording import FEWEST_ROWS, Recording, read_recording
@@ -266,12 +265,8 @@ def friction_of(model: RobotModel, recording: Recording) -> tuple[Friction | Non
         recording.torque_at(signal, times) if signal in recording.signals else np.full(len(times), np.nan)
         for signal in signals
     ]
-    if recording.holds == "without_gravity":
-        model = model.with_change(lambda pin_model: setattr(pin_model, "gravity", pin.Motion.Zero()))
-    if recording.side == "link":
-        model = model.with_armature(np.zeros(model.nq))
-    rotors = recording.side == "motor"
-    return identify_friction(model, even, np.column_stack(torques), recording.period, rotors), ""
+    arm, rotors = measured_arm(model, recording), recording.side == "motor"
+    return identify_friction(arm, even, np.column_stack(torques), recording.period, rotors), ""
 
 
 def _simulated_friction(run: Run, joints: Sequence[str]) -> dict[str, tuple[float, float]]:

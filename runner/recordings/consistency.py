@@ -22,7 +22,15 @@ from scipy.optimize import nnls
 
 from runner.base.arrays import FloatArray
 from runner.recordings.columns_map import Signal
-from runner.recordings.other_meanings import MOVES, NO_GRAVITY, EvenMotion, OtherMeaning, other_meanings, scaled
+from runner.recordings.other_meanings import (
+    MOVES,
+    NO_GRAVITY,
+    OF_NOISE,
+    EvenMotion,
+    OtherMeaning,
+    other_meanings,
+    scaled,
+)
 from runner.recordings.recording import Recording
 from runner.recordings.smoothing import cutoff, derivative, evenly, low_pass
 from runner.robots.model import RobotModel
@@ -41,6 +49,7 @@ _WORSE = 0.1  # of a torque
 _CLIPPED, _PILE = 0.05, 3.0  # share of rows at a limit, and how many more than near it, of a clipped torque
 _NEAR = 0.1  # of the range of a torque
 _AT_REST = 0.01  # of the largest speed of a joint
+_FITS = 0.5  # r below which degrees explain a signal
 _DOUBTED, _HALVED = 0.1, 0.5  # r from which on the unit of a torque is doubted, and how much less another one leaves
 _OTHER_SCALE = 3.0  # times the model's torque, from which on a unit is doubted
 
@@ -72,9 +81,10 @@ def check_consistency(model: RobotModel, recording: Recording) -> LogVerdict:
     questions = [*_empty_torques(recording), *_slow_rows(recording)]
     if questions or q is None:
         return LogVerdict(tuple(questions), (), {})
-    if not (np.ptp(q, axis=0) > MOVES).any():
-        return LogVerdict((f"the arm stands still: no joint moves by {MOVES:g} rad. Use a log of a motion.",), (), {})
     motion = _motion(recording, joints, q)
+    if not motion.moves.any():
+        text = f"no joint moves by {MOVES:g} rad and by {OF_NOISE:g} times the noise of its encoder"
+        return LogVerdict((f"the arm stands still: {text}. Use a log of a motion.",), (), {})
     judge = _Judge(model, recording)
     before = judge.lacks(motion)
     chosen, changed = _best(judge, motion, before, list(other_meanings(model, recording, motion)))
@@ -155,7 +165,8 @@ def _motion(recording: Recording, joints: Sequence[str], q: FloatArray) -> EvenM
     every = max(1, len(recording.t) // _MOST)
     period, t = every * recording.period, recording.t[::every]
     times = np.minimum(period * np.arange(int(t[-1] / period + 1e-6) + 1), t[-1])
-    smooth = low_pass(evenly(t, q[::every], times), period, cutoff(period))
+    even = evenly(t, q[::every], times)
+    smooth = low_pass(even, period, cutoff(period))
     dq = derivative(smooth, period)
     edge = min(len(times) // 10, round(0.5 / period))
     rows = np.unique(np.linspace(edge, len(times) - 1 - edge, min(_ROWS, len(times) - 2 * edge)).astype(int))
@@ -170,21 +181,26 @@ def _motion(recording: Recording, joints: Sequence[str], q: FloatArray) -> EvenM
                 columns[:, place] = low_pass(even, period, cutoff(period))[rows]
         return columns
 
+    noise = np.sqrt(np.mean((even - smooth) ** 2, axis=0))
+    moves = np.ptp(smooth, axis=0) > np.maximum(MOVES, OF_NOISE * noise)
     return EvenMotion(
-        smooth[rows], dq[rows], derivative(dq, period)[rows],
+        moves, smooth[rows], dq[rows], derivative(dq, period)[rows],
         others("torque", joints), others("tip", ("x", "y", "z")), others("reference", joints),
     )  # fmt: skip
+
+
+def measured_arm(model: RobotModel, recording: Recording) -> RobotModel:
+    """Return the arm whose torques the sensors of a log measure: without gravity, or without rotors; see Column."""
+    if recording.holds == "without_gravity":
+        model = model.with_change(lambda pin_model: setattr(pin_model, "gravity", pin.Motion.Zero()))
+    return model if recording.side == "motor" else model.with_armature(np.zeros(model.nq))
 
 
 class _Judge:
     """Lack of fit of a motion, by the kind of evidence and joint."""
 
     def __init__(self, model: RobotModel, recording: Recording) -> None:
-        self._model, self._data = pin.Model(model.pin_model), model.pin_model.createData()
-        if recording.holds == "without_gravity":
-            self._model.gravity = pin.Motion.Zero()
-        if recording.side == "link":
-            self._model.armature = np.zeros(model.nq)
+        self._model, self._data = measured_arm(model, recording).separate()
         self._tip = model.tip_frame
         self.currents = [model.joint_names.index(signal.of) for signal in recording.currents]
 
@@ -245,6 +261,7 @@ def _best(
             (_total(lacks), number)
             for number, meaning in enumerate(meanings)
             if not _spoils(meaning, before, lacks := judge.lacks(meaning.change(motion)))
+            and _fits(meaning, before, lacks)
         ]
         least, number = min(tried, default=(total, 0))
         if least > total - _CLEARLY:
@@ -261,6 +278,21 @@ def _spoils(meaning: OtherMeaning, before: dict[tuple[str, int], float], after: 
     return meaning.line == NO_GRAVITY and any(after[key] > lack + _WORSE for key, lack in before.items())
 
 
+def _fits(meaning: OtherMeaning, before: dict[tuple[str, int], float], after: dict[tuple[str, int], float]) -> bool:
+    """Return whether a meaning explains the signal that decides; degrees also shrink the noise of accelerations."""
+    return after[_deciding(before, after)] < (_FITS if meaning.line == "unit: deg" else 1.0)
+
+
+def _deciding(before: dict[tuple[str, int], float], after: dict[tuple[str, int], float]) -> tuple[str, int]:
+    """Return the signal, by kind and joint, whose lack another meaning lowers most."""
+
+    def gained(key: tuple[str, int]) -> float:
+        noise = _NOISE[key[0]]
+        return float(np.log(before[key] + noise) - np.log(after[key] + noise))
+
+    return max(before, key=gained)
+
+
 def _question(
     meaning: OtherMeaning,
     joints: Sequence[str],
@@ -268,12 +300,7 @@ def _question(
     after: dict[tuple[str, int], float],
 ) -> str:
     """Return a question with the two numbers that decide: what is unexplained before and after."""
-
-    def gained(key: tuple[str, int]) -> float:
-        noise = _NOISE[key[0]]
-        return float(np.log(before[key] + noise) - np.log(after[key] + noise))
-
-    kind, joint = max(before, key=gained)
+    kind, joint = _deciding(before, after)
     of = {"tip": "the tip", "torque": "the torque of ", "reference": "the commanded position of "}[kind]
     what = of if kind == "tip" else f"{of}{joints[joint]}"
     return (

@@ -5,6 +5,7 @@ from dataclasses import dataclass, replace
 from itertools import combinations
 
 import numpy as np
+from numpy.typing import NDArray
 
 from runner.base.arrays import FloatArray
 from runner.recordings.columns_map import Signal
@@ -21,14 +22,18 @@ NO_GRAVITY = "holds: without_gravity"
 """The line that says that gravity is not in the torques."""
 WITHOUT_GRAVITY = f"Say {NO_GRAVITY}."
 """End of the question whether gravity is in the torques."""
-MOVES = 1e-4
-"""What moves less shows nothing, in rad or m."""
+MOVES, OF_NOISE = 1e-4, 6.0
+"""What moves by less shows nothing: in rad or m, and in rms of the noise of its encoder."""
 
 
 @dataclass(frozen=True)
 class EvenMotion:
-    """Even rows of a log: positions with derivatives, and what they are compared with, NaN where not recorded."""
+    """Even rows of a log: positions with derivatives, and what they are compared with, NaN where not recorded.
 
+    `moves` is True for each joint whose motion stands out from the noise of its encoder, shape (nq,).
+    """
+
+    moves: NDArray[np.bool_]
     q: FloatArray
     dq: FloatArray
     ddq: FloatArray
@@ -61,7 +66,7 @@ def other_meanings(model: RobotModel, recording: Recording, motion: EvenMotion) 
     joints = model.joint_names
     columns = {signal: f"columns.{name}" for signal, name in recording.columns.items()}
     torques = [place for place in range(len(joints)) if not np.isnan(motion.torque[0, place])]
-    moving = [place for place in range(len(joints)) if np.ptp(motion.q[:, place]) > MOVES]
+    moving = np.flatnonzero(motion.moves).tolist()
     for place in moving:
         name = columns[Signal("position", joints[place])]
         yield _opposite(recording, name, place, "q")

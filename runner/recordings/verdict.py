@@ -9,6 +9,7 @@ from runner.base.arrays import FloatArray
 from runner.base.quantities import quantity
 from runner.recordings.columns_map import Signal
 from runner.recordings.compare import RecordingComparison, Residual
+from runner.recordings.consistency import measured_arm
 from runner.recordings.motions import cut_at_rests
 from runner.recordings.smoothing import cutoff, derivative, low_pass
 from runner.robots.model import RobotModel
@@ -91,7 +92,7 @@ def explained(found: RecordingComparison) -> Mapping[str, float]:
     by_signal, model = {one.signal: one for one in found.residuals}, found.model
     joints = model.joint_names
     wanted = [Signal(kind, joint) for kind in ("position", "torque") for joint in joints]
-    if not all(signal in by_signal for signal in wanted) or found.recording.holds != "torque":
+    if not all(signal in by_signal for signal in wanted):
         return {}
     t = by_signal[wanted[0]].t
     period = float(np.median(np.diff(t)))
@@ -103,7 +104,7 @@ def explained(found: RecordingComparison) -> Mapping[str, float]:
     ddq, signs = derivative(dq, period), low_pass(np.sign(dq), period, cutoff(period))
     edge = int(_EDGE * len(t))
     rows = np.arange(edge, len(t) - edge, max(1, len(t) // _MOST_ROWS))
-    rigid = model if found.recording.side == "motor" else model.with_armature(np.zeros(model.nq))
+    rigid = measured_arm(model, found.recording)
 
     def torques(arm: RobotModel) -> FloatArray:
         pin_model, data = arm.pin_model, arm.pin_model.createData()

@@ -65,10 +65,14 @@ def lag_lines(found: RecordingComparison) -> Iterator[str]:
     """Yield how much later the joints move than their commands, in the recording and in the run."""
     if found.lags:
         each = ", ".join(
-            f"{joint} {quantity(log, 's')}" + ("" if isnan(run) else f" (run {quantity(run, 's')})")
+            f"{joint} {_lag(log)}" + ("" if isnan(run) else f" (run {_lag(run)})")
             for joint, (log, run) in found.lags.items()
         )
         yield f"Joints move later than their commands: {each}."
+
+
+def _lag(lag: float) -> str:
+    return quantity(round(lag, 5), "s")  # a hundredth of the usual time between rows
 
 
 def friction_lines(found: RecordingComparison) -> Iterator[str]:
