@@ -4,6 +4,7 @@ from collections.abc import Iterator, Mapping, Sequence
 
 import numpy as np
 import pinocchio as pin
+from scipy.optimize import lsq_linear
 
 from runner.base.arrays import FloatArray
 from runner.base.quantities import quantity
@@ -16,6 +17,8 @@ from runner.robots.model import RobotModel
 
 _MOST_ROWS = 2_000
 _EDGE = 0.05  # of the rows at each end, where the low-pass knows only one side
+_POSES = 20  # of the mass matrix, of which the mean counts
+_HIDES = 0.5  # of a torque's differences, from which on noise hides them
 _EXPLAINS = 0.1  # of the squares of the torques' differences, from which on a cause is named
 
 
@@ -27,7 +30,8 @@ def verdict_lines(found: RecordingComparison) -> Iterator[str]:
     """
     first, last = found.span
     positions = "" if found.follows_measured else _positions(found.residuals)
-    said = [text for text in (positions, _torques(found.residuals)) if text]
+    hidden = _hidden(found)
+    said = [text for text in (positions, _torques(found.residuals, hidden)) if text]
     count = len(cut_at_rests(found))
     many = f", on {count} motions," if count > 1 else ""
     yield f"Over {quantity(last - first, 's')}{many} the model predicts {' and '.join(said)}."
@@ -37,7 +41,7 @@ def verdict_lines(found: RecordingComparison) -> Iterator[str]:
         yield f"Share of the torques' squared differences that a single cause explains: {', '.join(causes)}."
     elif shares:
         yield f"None of {', '.join(shares)} explains a tenth of the torques' differences (squares)."
-    untold = list(_untold(found))
+    untold = list(_untold(found, hidden))
     if untold:
         yield f"The log does not tell: {'; '.join(untold)}."
 
@@ -67,14 +71,41 @@ def torque_shares(residuals: Sequence[Residual]) -> tuple[float, dict[str, float
     return float(whole), {joint: float(np.sqrt(off / size)) for joint, (off, size) in pairs.items()}
 
 
-def _torques(residuals: Sequence[Residual]) -> str:
+def _torques(residuals: Sequence[Residual], hidden: Sequence[str]) -> str:
     shares = torque_shares(residuals)
     if shares is None:
         return ""
     whole, by_joint = shares
-    worst = max(by_joint, key=by_joint.__getitem__)
-    of_worst = f" ({worst}: {per_cent(by_joint[worst])})" if len(by_joint) > 1 else ""
+    told = [joint for joint in by_joint if joint not in hidden]
+    worst = max(told, key=by_joint.__getitem__, default="")
+    of_worst = f" ({worst}: {per_cent(by_joint[worst])})" if worst and len(by_joint) > 1 else ""
     return f"torques to {per_cent(whole)} of their rms{of_worst}"
+
+
+def noise_torques(found: RecordingComparison) -> Mapping[str, float]:
+    r"""Return the rms of the torques that noise of the measured positions makes, by joint, in N m or N.
+
+    They enter where a model follows measured positions. Accelerations have what a low-pass with cut-off f leaves of the
+    noise. With white noise of standard deviation \sigma and a time T between rows, accelerations and torques have
+
+    .. math:: s_k^2 = 2 \sigma_k^2 T \, (2 \pi)^4 f^5 / 5, \qquad s_{\tau_j}^2 = \sum_k M_{jk}^2 s_k^2
+    """
+    joints = found.model.joint_names
+    q, period = found.recording.positions(joints), found.recording.period
+    if q is None:
+        return {}
+    frequency = cutoff(period)
+    squares = np.mean((q - low_pass(q, period, frequency)) ** 2, axis=0) / (1.0 - 2.0 * frequency * period)
+    accelerations = squares * 2.0 * period * (2.0 * np.pi) ** 4 * frequency**5 / 5.0
+    couplings = np.mean([found.model.mass_matrix(row) ** 2 for row in q[:: len(q) // _POSES + 1]], axis=0)
+    return dict(zip(joints, np.sqrt(couplings @ accelerations).tolist(), strict=True))
+
+
+def _hidden(found: RecordingComparison) -> list[str]:
+    """Return the joints whose differences of torques may be those of noise in the positions that the run follows."""
+    noise = noise_torques(found) if found.follows_measured else {}
+    torques = [one for one in found.residuals if one.signal.kind == "torque"]
+    return [one.signal.of for one in torques if noise.get(one.signal.of, 0.0) > _HIDES * one.rms]
 
 
 def per_cent(share: float) -> str:
@@ -86,8 +117,9 @@ def explained(found: RecordingComparison) -> Mapping[str, float]:
     """Return the share of the torques' squared differences that each single cause explains; empty without torques.
 
     Differences are those of the recorded torques from the model's at the recorded motion, behind a low-pass, each joint
-    divided by the rms of its torque. The causes are viscous and Coulomb friction, another inertia of the rotor and a
-    constant, of each joint, and a mass at the tip.
+    divided by the rms of its torque, without joints whose differences noise of the positions hides. The causes are
+    viscous and Coulomb friction, another inertia of the rotor and a constant, of each joint, and a mass at the tip.
+    Friction and the rotors' inertias are not below zero.
     """
     by_signal, model = {one.signal: one for one in found.residuals}, found.model
     joints = model.joint_names
@@ -113,31 +145,36 @@ def explained(found: RecordingComparison) -> Mapping[str, float]:
     of_model = torques(rigid)
     payload = torques(rigid.with_payload(1.0)) - of_model
     scale = np.sqrt(np.mean(tau[rows] ** 2, axis=0)) + 1e-9
-    each = np.eye(len(joints))
+    each, any_sign = np.eye(len(joints)), np.full(len(joints), -np.inf)
     columns = {
-        "friction": [dq[rows][:, :, None] * each, signs[rows][:, :, None] * each],
-        "rotor inertia": [ddq[rows][:, :, None] * each],
-        "a payload": [payload[:, :, None]],
-        "a constant": [np.broadcast_to(each, (len(rows), *each.shape))],
+        "friction": ([dq[rows][:, :, None] * each, signs[rows][:, :, None] * each], np.zeros(2 * len(joints))),
+        "rotor inertia": ([ddq[rows][:, :, None] * each], -rigid.armature),
+        "a payload": ([payload[:, :, None]], any_sign[:1]),
+        "a constant": ([np.broadcast_to(each, (len(rows), *each.shape))], any_sign),
     }
     if found.recording.side == "link":
         del columns["rotor inertia"]
-    y = ((tau[rows] - of_model) / scale).ravel()
-    return {
-        cause: _share(y, np.concatenate([(part / scale[:, None]).reshape(len(y), -1) for part in parts], axis=1))
-        for cause, parts in columns.items()
-    }
+    noise = noise_torques(found)
+    off = tau[rows] - of_model
+    seen = np.array([noise[joint] for joint in joints]) < _HIDES * np.sqrt(np.mean(off**2, axis=0))
+    y = (off / scale)[:, seen].ravel()
+
+    def matrix(parts: Sequence[FloatArray]) -> FloatArray:
+        return np.concatenate([(part / scale[:, None])[:, seen].reshape(len(y), -1) for part in parts], axis=1)
+
+    return {cause: _share(y, matrix(parts), least) for cause, (parts, least) in columns.items()} if seen.any() else {}
 
 
-def _share(y: FloatArray, X: FloatArray) -> float:
+def _share(y: FloatArray, X: FloatArray, least: FloatArray) -> float:
+    """Return the share of squares that columns explain with factors of at least `least`, shape (k,)."""
     whole = float(y @ y)
     if whole == 0.0:
         return 0.0
-    rest = y - X @ np.linalg.lstsq(X, y, rcond=None)[0]
+    rest = y - X @ lsq_linear(X, y, (least, np.inf)).x
     return 1.0 - float(rest @ rest) / whole
 
 
-def _untold(found: RecordingComparison) -> Iterator[str]:
+def _untold(found: RecordingComparison, hidden: Sequence[str]) -> Iterator[str]:
     if found.offset.rivals or found.offset.open_ended:
         yield "when the run begins, so that differences of positions may be those of the time"
     if found.friction is None:
@@ -148,6 +185,8 @@ def _untold(found: RecordingComparison) -> Iterator[str]:
             yield f"friction of {', '.join(lacking)}"
     if found.follows_measured:
         yield "the accuracy of positions, because the run follows the measured ones"
+    if hidden:
+        yield f"torques of {', '.join(hidden)}, because the noise of the measured positions makes as large ones"
     if not found.lags:
         yield "a lag of the arm, as it holds no commands"
     if not found.recording.of_kind("torque"):

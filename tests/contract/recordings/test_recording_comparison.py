@@ -12,8 +12,8 @@ from runner.recordings.columns_map import Signal
 from runner.recordings.compare import compare_recording
 from runner.recordings.friction import Friction, FrictionEstimate
 from runner.recordings.setting import setting_of
-from runner.recordings.smoothing import derivative
-from runner.recordings.verdict import explained, verdict_lines
+from runner.recordings.smoothing import cutoff, derivative, low_pass
+from runner.recordings.verdict import explained, noise_torques, verdict_lines
 from runner.recordings.words import aligned_text, friction_lines, lag_lines
 from runner.sweeps.job import run
 
@@ -227,3 +227,49 @@ def test_a_run_that_failed_is_refused(tmp_path):
     failed = run("robot=macro", "duration=0.5", "plant=rk4", "controller.natural_frequency=1e5", f"outputs={tmp_path}")
     with pytest.raises(RunnerError, match="a recording is compared with a run that ended well"):
         compare_recording(failed, tmp_path / "recording.csv", tmp_path / "map.yaml")
+
+
+def test_causes_are_named_where_torques_hold_no_gravity(stored, compared):
+    model = setting_of(stored).config.arm.model
+
+    def change(frame):
+        q, dq = (np.column_stack([frame[f"{name}{j}"] for j in (1, 2, 3)]) for name in ("a", "dq"))
+        gravity = np.array([model.gravity_torque(row) for row in q])
+        return frame.assign(**{f"c{j}": (frame[f"c{j}"] - gravity[:, j - 1] + 0.8 * dq[:, j - 1]) for j in (1, 2, 3)})
+
+    without = TORQUES.replace("N m}", "N m, holds: without_gravity}")
+    shares = explained(compared(f"{JOINTS}, {without}", change=change))
+    assert shares["friction"] > 0.95
+
+
+def test_friction_and_rotors_below_zero_explain_nothing(compared):
+    def pushed(frame):
+        return frame.assign(**{f"c{j}": frame[f"c{j}"] - 0.8 * frame[f"dq{j}"] for j in (1, 2, 3)})
+
+    shares = explained(compared(f"{JOINTS}, {TORQUES}", change=pushed))
+    assert shares["friction"] < 0.2
+
+
+def test_torques_that_noise_of_the_positions_hides_are_not_judged(compared):
+    def noisy(frame):
+        drawn = np.random.default_rng(4)
+        return frame.assign(**{f"a{j}": frame[f"a{j}"] + 2e-3 * drawn.normal(size=len(frame)) for j in (1, 2, 3)})
+
+    found = compared(f"{JOINTS}, {TORQUES}", change=noisy)
+    assert explained(found) == {}
+    hides = "torques of q1, q2, q3, because the noise of the measured positions makes as large ones"
+    assert hides in " ".join(verdict_lines(replace(found, follows_measured=True)))
+    assert hides not in " ".join(verdict_lines(found))
+
+
+def test_noise_makes_the_torques_of_white_accelerations(compared):
+    """The formula against torques of drawn noise behind the low-pass."""
+    found = compared(f"{JOINTS}, {TORQUES}")
+    period, joints = found.recording.period, found.model.joint_names
+    still = np.random.default_rng(5).normal(scale=1e-3, size=(20_000, 3))
+    t = period * np.arange(len(still))
+    signals = {Signal("position", joint): still[:, place] for place, joint in enumerate(joints)}
+    made = noise_torques(replace(found, recording=replace(found.recording, t=t, signals=signals)))
+    ddq = derivative(derivative(low_pass(still, period, cutoff(period)), period), period)[500:-500]
+    expected = np.sqrt(np.mean((ddq @ found.model.mass_matrix(np.zeros(3))) ** 2, axis=0))
+    assert list(made.values()) == pytest.approx(expected, rel=0.1)

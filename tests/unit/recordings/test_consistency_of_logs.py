@@ -189,3 +189,22 @@ def test_an_arm_that_stands_still_is_refused(arm):
     still = np.tile(motion(arm)[0], (len(T), 1))
     (question,) = check_consistency(arm, made(arm, still, kinds=())).questions
     assert question.startswith("the arm stands still")
+
+
+def test_noise_of_an_encoder_is_no_motion(arm):
+    still = motion(arm)[0] + 2e-4 * np.random.default_rng(2).normal(size=(len(T), arm.nq))
+    (question,) = check_consistency(arm, made(arm, still)).questions
+    assert question.startswith("the arm stands still: no joint moves by 0.0001 rad and by 6 times the noise")
+
+
+@pytest.mark.parametrize("noise", [3e-4, 1e-3, 3e-3])
+def test_degrees_are_not_proposed_because_they_shrink_noise(arm, noise):
+    def noisy(signals):
+        drawn = np.random.default_rng(3)
+        own = {s: v + noise * drawn.normal(size=len(v)) for s, v in signals.items() if s.kind == "position"}
+        return {**signals, **own}
+
+    slow = motion(arm)[0] + 0.1 * (motion(arm) - motion(arm)[0])
+    assert check_consistency(arm, made(arm, slow, noisy)).questions == ()
+    questions = check_consistency(arm, made(arm, change=scaled(position(arm, 2), np.rad2deg(1.0)))).questions
+    assert any("unit: deg" in question for question in questions)
