@@ -17,7 +17,7 @@ from runner.robots.model import RobotModel
 
 _MOST_ROWS = 2_000
 _EDGE = 0.05  # of the rows at each end, where the low-pass knows only one side
-_POSES = 20  # of the mass matrix, of which the mean counts
+_POSES = 20  # at which the mass matrix is taken
 _HIDES = 0.5  # of a torque's differences, from which on noise hides them
 _EXPLAINS = 0.1  # of the squares of the torques' differences, from which on a cause is named
 
