@@ -5,6 +5,7 @@ pass a lower low-pass filter, all without delay. They are decimated to independe
 identification of robots with power model, IEEE ICRA 1997).
 """
 
+from collections.abc import Iterator
 from dataclasses import dataclass
 from functools import cached_property
 
@@ -13,19 +14,30 @@ import pinocchio as pin
 from numpy.typing import NDArray
 
 from runner.base.arrays import FloatArray
-from runner.recordings.smoothing import derivative, low_pass
+from runner.base.errors import RunnerError
+from runner.base.quantities import quantity
+from runner.recordings.columns_map import Signal
+from runner.recordings.recording import Recording
+from runner.recordings.smoothing import cutoff, derivative, evenly, low_pass
 from runner.robots.model import RobotModel
 
 STANDSTILL = 0.05
-"""Share of a joint's largest speed: rows below it are near standstill."""
+"""Share of a joint's fastest speed: rows below it are near standstill."""
 
 _FIRST = 5.0  # times the cut-off: that of the low-pass before the equations, which leaves the motion unchanged
 _SAMPLES = 4.0  # times that, the fewest samples in a second at which the equations are evaluated
-_SLOW = 0.01  # of the largest speed of all joints of its kind: a joint that is slower creeps
+_SLOW = 0.01  # of the fastest speed of all joints of its kind: a joint that is slower creeps
+_BRIEF = 5.0  # periods of the first low-pass, over which it spreads a single bad sample
+_BRIEF_SHARE = 0.05  # of the rows, the most that are left out as such
 _SPOILT = 2.0  # periods of the cut-off at both ends, where the low-pass knows only one side
 _CLIPPED = 0.01  # of the rows at an end of the range of torques
 _SAME = 1e-6  # of the range of torques: what differs less is one value, but for rounding
 _PILED = 10  # times the rows next to it: rounding itself puts 1.4 times as many at the peak of a sine
+_BEYOND = 5.0  # times the limit of a joint's speed: a jump
+_APART = 10.0  # times other steps of the joint, in the log and next to it: a jump
+_OTHERS = 0.01, 10  # share and least number of the steps that may be jumps
+_BESIDE = 5  # rows on each side that are next to a jump
+_STILL = 3.0  # times the speed that noise makes, below which a joint may stand still
 _ONE_WAY = 0.98  # of sgn behind the low-pass: below it the joint has just turned round
 FEWEST = 10
 """Fewest rows of a joint in each direction."""
@@ -78,9 +90,8 @@ class EvenRows:
 
     @cached_property
     def fastest(self) -> FloatArray:
-        """Largest speed of each joint, shape (nq,), in rad/s."""
-        fastest: FloatArray = np.abs(self.dq).max(axis=0)
-        return fastest
+        """Fastest speed of each joint, shape (nq,), in rad/s; see fastest_speed."""
+        return fastest_speed(self.dq, self.period, self.frequency)
 
     def creeps(self, joint: int) -> bool:
         """Return True if a joint hardly moves compared with the fastest joint of its kind."""
@@ -138,7 +149,8 @@ def motion_of(
     # White noise above the low-pass has, behind two derivatives, a variance of 2 T sigma^2 (2 pi)^4 f^5 / 5 up to f.
     above = 1.4826 * np.median(np.abs(q - smooth), axis=0) / np.sqrt(1.0 - 2.0 * first * period)
     noise = above * (2.0 * np.pi) ** 2 * np.sqrt(0.4 * period * frequency**5)
-    unusable = tuple(_unusable(*pair) for pair in zip(measured.T, np.abs(speed).T, strict=True))
+    fastest = fastest_speed(speed, period, frequency)
+    unusable = tuple(_unusable(*each) for each in zip(measured.T, np.abs(speed).T, fastest.tolist(), strict=True))
     q, torques, signs = smooth[::every], *(low_pass(signals, period, first)[::every] for signals in (torques, signs))
     period *= every
     dq = derivative(q, period) if speeds is None else speed[::every]
@@ -147,11 +159,105 @@ def motion_of(
     return EvenRows(model, period, frequency, q, dq, ddq, signs, torques, noise, unusable)
 
 
-def _unusable(torques: FloatArray, speed: FloatArray) -> str:
+def fastest_speed(speeds: FloatArray, period: float, frequency: float) -> FloatArray:
+    """Return the largest speed that lasts longer than what a single bad sample makes, shapes (N, nq) to (nq,).
+
+    Args:
+        speeds: Speeds behind the first low-pass, shape (N, nq), in rad/s.
+        period: Time between two rows, in s.
+        frequency: Cut-off of the low-pass on both sides of the equations, in Hz.
+    """
+    first = min(_FIRST * frequency, 0.25 / period)
+    brief = min(round(_BRIEF / (first * period)), int(_BRIEF_SHARE * len(speeds)))
+    place = len(speeds) - 1 - brief
+    fastest: FloatArray = np.partition(np.abs(speeds), place, axis=0)[place]
+    return fastest
+
+
+def check_jumps(model: RobotModel, recording: Recording) -> None:
+    """Check that no joint jumps from one row to the next.
+
+    Raises:
+        RunnerError: if one does; names the column, the time and the size.
+    """
+    found = list(find_jumps(model, recording))
+    if found:
+        raise RunnerError(f"{recording.path}: {' '.join(found)}")
+
+
+def find_jumps(model: RobotModel, recording: Recording) -> Iterator[str]:
+    """Yield a sentence for each joint whose position jumps between two rows, far beyond its speed limit.
+
+    A jump also exceeds the other steps of the joint by far: those of the whole log, of which positions that stay equal
+    over several rows have many, and those of the rows next to it. A joint without a limit is judged by these only.
+    """
+    times = np.maximum(np.diff(recording.t), recording.period)
+    for joint, limit in zip(model.joint_names, model.velocity_limits.tolist(), strict=True):
+        signal = Signal("position", joint)
+        if signal not in recording.signals:
+            continue
+        steps = np.diff(recording.signals[signal])
+        sizes = np.abs(steps)
+        moved = np.sort(sizes[sizes > 0.0])
+        left_out = max(int(_OTHERS[0] * len(moved)), _OTHERS[1])
+        usual = float(moved[-1 - left_out]) if len(moved) > left_out else 0.0
+        limited = bool(np.isfinite(limit) and limit > 0.0)
+        if not limited and usual == 0.0:
+            continue
+        fast = (sizes > _APART * usual) & (sizes > (_BEYOND * limit * times if limited else 0.0))
+        rows = [
+            row
+            for row in np.flatnonzero(fast).tolist()
+            if sizes[row] > _APART * np.median(sizes[max(0, row - _BESIDE) : row + _BESIDE + 1])
+        ]
+        if not rows:
+            continue
+        row = rows[0]
+        unit = model.joint_units[model.joint_names.index(joint)]
+        returns = any(row < other <= row + _BESIDE and steps[other] * steps[row] < 0.0 for other in rows)
+        places = 1 + int(np.sum(np.diff(rows) > _BESIDE))
+        more = f" (and at {places - 1} more times)" if places > 1 else ""
+        ratio = f", {sizes[row] / times[row] / limit:.0f} times the speed limit of {joint}" if limited else ""
+        yield (
+            f"{recording.columns[signal]} jumps by {quantity(float(sizes[row]), unit)} within "
+            f"{quantity(float(times[row]), 's')} at {recording.t[row + 1]:.6g} s after the first row{more}{ratio}. "
+            f"{'Correct or cut that row.' if returns else 'Cut the log there, or correct the column.'}"
+        )
+
+
+def check_moves(model: RobotModel, recording: Recording) -> None:
+    """Check that a joint moves faster than the noise of its positions makes it seem to.
+
+    White noise of deviation sigma has a speed of 2 pi sigma sqrt(2 T f^3 / 3) behind a low-pass at f.
+
+    Raises:
+        RunnerError: if no joint does; names the one that comes nearest.
+    """
+    q, period = recording.positions(model.joint_names), recording.period
+    if q is None or recording.duration < 2.0 * _SPOILT / cutoff(period):
+        return
+    times = np.minimum(period * np.arange(int(recording.duration / period + 1e-6) + 1), recording.t[-1])
+    even, frequency = evenly(recording.t, q, times), cutoff(period)
+    smooth = low_pass(even, period, frequency)
+    edge = round(_SPOILT / (frequency * period))
+    speed = derivative(smooth, period)[edge : len(times) - edge]
+    above = 1.4826 * np.median(np.abs(even - smooth), axis=0) / np.sqrt(1.0 - 2.0 * frequency * period)
+    noise = above * 2.0 * np.pi * np.sqrt(2.0 * period * frequency**3 / 3.0)
+    shares = np.sqrt(np.mean(speed**2, axis=0)) / np.maximum(noise, 1e-300)
+    nearest = int(np.argmax(shares))
+    if shares[nearest] < _STILL:
+        raise RunnerError(
+            f"{recording.path}: the arm stands still: the speed of {model.joint_names[nearest]} is "
+            f"{shares[nearest]:.2g} times what the noise of its positions makes, that of other joints less. Needed: a "
+            "log of a motion."
+        )
+
+
+def _unusable(torques: FloatArray, speed: FloatArray, fastest: float) -> str:
     """Return the reason why a joint's torque does not determine its friction; empty if it does."""
     if not np.isfinite(torques).all():
         return "no torque is recorded"
-    rows = torques[speed > STANDSTILL * speed.max()]
+    rows = torques[speed > STANDSTILL * fastest]
     low, high = rows.min(initial=np.inf), rows.max(initial=-np.inf)
     if low == high:
         return f"its torque is constant: {low:.4g} in all rows in which it moves"

@@ -7,6 +7,7 @@ import pinocchio as pin
 import pytest
 from scipy.signal import lfilter
 
+from runner.recordings.equations import motion_of
 from runner.recordings.friction import identify_friction
 from runner.robots.description import find_urdf, read_urdf
 from runner.robots.model import RobotModel
@@ -141,6 +142,29 @@ def test_a_joint_that_creeps_has_no_friction(model):
     motion = tuple(part * [1.0, 1.0, 1e-3] for part in (q, dq, ddq))
     found = identify_friction(model, motion[0], torques(model, motion) + friction_of(motion[1]), H)
     assert found.lacking == ["q3: it moves too little, or in only one direction"]
+
+
+def test_a_single_bad_sample_stops_no_joint(model):
+    """The fastest speed is that of the motion, however large the jump is."""
+    q, dq, _ = motion = moved()
+    spoilt = q.copy()
+    spoilt[1250, 1] += 5.0
+    tau = torques(model, motion) + friction_of(dq)
+    assert identify_friction(model, spoilt, tau, H).lacking == []
+    clean, other = (motion_of(model, each, tau, H, 10.0) for each in (q, spoilt))
+    assert other.fastest == pytest.approx(clean.fastest, rel=0.05)
+    assert clean.fastest == pytest.approx(np.abs(clean.dq).max(axis=0), rel=0.03)
+
+
+@pytest.mark.parametrize("lasts", [0.5, 1.0])
+def test_a_joint_that_moves_in_a_small_part_of_the_log_moves(model, lasts):
+    t = np.arange(0.0, 40.0, H)
+    q = moved(t)[0]
+    share = np.clip((t - 20.0) / lasts, 0.0, 1.0)
+    q[:, 2] = 0.8 * share**3 * (10.0 - 15.0 * share + 6.0 * share**2)
+    motion = motion_of(model, q, np.zeros_like(q), H, 10.0)
+    assert motion.fastest[2] == pytest.approx(0.8 * 1.875 / lasts, rel=0.1)
+    assert not motion.creeps(2)
 
 
 def integrated(dq, period):
