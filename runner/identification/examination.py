@@ -18,6 +18,7 @@ from runner.identification.result import Untold
 from runner.identification.system import Layout
 from runner.recordings.columns_map import ColumnsMap, read_map
 from runner.recordings.consistency import check_consistency
+from runner.recordings.equations import STANDSTILL, check_jumps, check_moves
 from runner.recordings.recording import Recording, read_recording
 from runner.recordings.smoothing import cutoff
 from runner.robots.model import RobotModel
@@ -101,6 +102,8 @@ def read_question(
                 "`runner compare` identifies friction without it."
             )
         recording = read_recording(path, said, factors, fill_gaps)
+        check_jumps(model, recording)
+        check_moves(model, recording)
         verdict = check_consistency(said.loaded(model), recording)
         if verdict.questions:
             raise RunnerError(f"{columns}: {' '.join(verdict.questions)}")
@@ -152,12 +155,35 @@ def examine_logs(question: ArmLogs) -> IdentificationExamination:
             f"{'; '.join(dict.fromkeys(text for each in rows for text in each.motion.unusable if text)) or 'slow'}."
         )
     fit = fit_logs(rows, "coulomb", currents=question.currents)
+    check_intervals(question, fit)
     payloads = [
         f"{change.log}: the payload seems to change by {change.mass:+.2g} kg at {change.time:.3g} s"
         for change in find_payload_changes(fit, rows)
     ]
     notes = [[*own, *_unusual(question.model, each)] for own, each in zip(question.notes, rows, strict=True)]
     return IdentificationExamination(question, sums, rows, fit, list(find_untold(question, sums, fit)), payloads, notes)
+
+
+def check_intervals(question: ArmLogs, fit: Fit) -> None:
+    """Check that the rows of a fit are enough for the interval of a parameter.
+
+    Raises:
+        RunnerError: if they are not.
+    """
+    delay = fit.state.layout.delay
+    own = [column for column in fit.taken if column != delay]
+    if np.isfinite(fit.halves[own]).any():
+        return
+    many, rows = int(np.sum(fit.weights > 0.0)), len(fit.weights)
+    raise RunnerError(
+        f"{_paths(question)}: too few rows are in the fit: {many} of {rows:,}, in which a joint moves one way, faster "
+        f"than {STANDSTILL:.0%} of its fastest speed. Needed: more than {len(fit.taken) + 1}, at different times; move "
+        "each joint in both directions, at several speeds."
+    )
+
+
+def _paths(question: ArmLogs) -> str:
+    return ", ".join(str(recording.path) for recording in question.recordings)
 
 
 def usual_cutoff(question: ArmLogs) -> float:

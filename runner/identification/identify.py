@@ -13,6 +13,7 @@ from runner.identification.checks import SecondMethod, find_flags, second_method
 from runner.identification.examination import (
     ArmLogs,
     IdentificationExamination,
+    check_intervals,
     columns_in_sum,
     find_untold,
     find_weak,
@@ -90,6 +91,7 @@ def identify(
                 places.append(attempt(tried[best][0].state.layout.kind, rows_of(question, sums, at), at))
         best = places[_chosen([tried[place][1] for place in places])]
     fit, held, rows, at = tried[best]
+    check_intervals(question, fit)
     second = second_method(fit)
     follows = _follows(fit, rows, question.model)
     alternatives = [
@@ -136,7 +138,7 @@ def identify(
         follows=follows,
         payloads=examined.payloads,
         delay=fit.state.delay,
-        delay_half=float(fit.halves[layout.delay]),
+        delay_half=float(half) if np.isfinite(half := fit.halves[layout.delay]) else None,
         block=fit.block,
         rank=len(fit.taken) - (layout.delay in fit.taken),
         condition=fit.condition,

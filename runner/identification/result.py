@@ -3,7 +3,7 @@
 import dataclasses
 import hashlib
 import math
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
@@ -11,6 +11,7 @@ from typing import Any
 from pydantic import TypeAdapter, ValidationError
 
 from runner.base.atomic import refuse_links, write_atomically
+from runner.base.errors import RunnerError
 from runner.store.kinds import KINDS
 from runner.store.seal import DamagedError, read_json, sealed_json
 
@@ -165,7 +166,7 @@ class Identification:
         follows: What the residuals still follow, in words.
         payloads: Changes of the payload within logs, in words.
         delay: Delay of the torques, in s.
-        delay_half: Half-width of its interval, in s.
+        delay_half: Half-width of its interval, in s; None if the logs do not tell the delay.
         block: Time within which residuals may be correlated, in s.
         rank: Number of determined parameters, without the delay.
         condition: Condition number of the equations.
@@ -194,7 +195,7 @@ class Identification:
     follows: Sequence[str]
     payloads: Sequence[str]
     delay: float
-    delay_half: float
+    delay_half: float | None
     block: float
     rank: int
     condition: float
@@ -207,10 +208,18 @@ class Identification:
         """Write the result.
 
         Raises:
+            RunnerError: if a number of it is not finite, so that it could not be read.
             StoreError: if a file cannot be written.
         """
+        content = _plain(dataclasses.asdict(self) | {"folder": ""})
+        try:
+            _read(content)
+        except ValidationError as error:
+            raise RunnerError(
+                f"identification: {_first_fault(error)}. Nothing is stored; needed: a log with more motion."
+            ) from error
         refuse_links(self.folder.parent.parent, self.folder)
-        write_atomically(self.folder / _FILE, sealed_json(_plain(dataclasses.asdict(self) | {"folder": ""})))
+        write_atomically(self.folder / _FILE, sealed_json(content))
 
 
 def _plain(value: Any) -> Any:
@@ -237,8 +246,16 @@ def open_identification(folder: Path) -> Identification:
     content = read_json(path, _REMEDY)
     known = {each.name: content[each.name] for each in dataclasses.fields(Identification) if each.name in content}
     try:
-        return TypeAdapter(Identification).validate_python(known | {"folder": folder})
+        return _read(known | {"folder": folder})
     except ValidationError as error:
-        first = error.errors()[0]
-        text = f"{'.'.join(map(str, first['loc']))}: {first['msg']}"
-        raise DamagedError(f"cannot read {path}: it does not describe an identification: {text}; {_REMEDY}") from error
+        text = f"it does not describe an identification: {_first_fault(error)}"
+        raise DamagedError(f"cannot read {path}: {text}; {_REMEDY}") from error
+
+
+def _read(content: Mapping[str, Any]) -> Identification:
+    return TypeAdapter(Identification).validate_python(content)
+
+
+def _first_fault(error: ValidationError) -> str:
+    first = error.errors()[0]
+    return f"{'.'.join(map(str, first['loc']))}: {first['msg']}"

@@ -31,8 +31,12 @@ def answer_lines(found: Identification) -> Iterator[str]:
     known = [one for one in found.parameters if one.half <= _KNOWN * abs(one.value)]
     rough = [one for one in found.parameters if _KNOWN * abs(one.value) < one.half <= _ROUGH * abs(one.value)]
     yield (
-        f"{len(known)} of {len(found.parameters)} determined parameters are known within 10 %, {len(rough)} more "
-        f"within 50 %; the interval of the others is wider than half of their value."
+        "The logs determine no parameter."
+        if not found.parameters
+        else (
+            f"{len(known)} of {len(found.parameters)} determined parameters are known within 10 %, {len(rough)} more "
+            f"within 50 %; the interval of the others is wider than half of their value."
+        )
     )
     if found.prior is not None:
         shares = [(one.prior_share, one.name) for one in found.parameters if one.prior_share is not None]
@@ -124,10 +128,13 @@ def method_lines(found: Identification) -> Iterator[str]:
         f"{quantity(found.frequency, 'Hz')}; rank {found.rank}; condition number {found.condition:.3g}."
     )
     late = "late" if found.delay >= 0.0 else "early"
-    yield (
-        f"The torques are {quantity(abs(found.delay), 's')} {late} (± {quantity(found.delay_half, 's')}). Residuals "
-        f"may be correlated within {quantity(found.block, 's')}."
+    width = "not known how exactly" if found.delay_half is None else f"± {quantity(found.delay_half, 's')}"
+    told = (
+        "The logs do not determine the delay of the torques"
+        if found.delay_half is None and found.delay == 0.0
+        else f"The torques are {quantity(abs(found.delay), 's')} {late} ({width})"
     )
+    yield f"{told}. Residuals may be correlated within {quantity(found.block, 's')}."
     for log in found.logs:
         notes = "; ".join(log.notes)
         yield (

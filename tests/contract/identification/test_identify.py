@@ -3,6 +3,7 @@
 import json
 import re
 import shutil
+from dataclasses import fields, replace
 
 import numpy as np
 import pytest
@@ -11,6 +12,7 @@ from support.identified_logs import KnownArm, write_log
 
 import runner
 from runner.identification.result import open_identification
+from runner.identification.words import answer_lines, method_lines
 from runner.recordings.columns_map import FixedPayload
 from runner.reporting.identification_report import identification_document, parameters
 from runner.reporting.mathml import faulty
@@ -251,6 +253,84 @@ def test_logs_that_do_not_fit_are_one_sentence(arm, log, tmp_path, cli):
         runner.identify(path, columns=columns, robot="macro", friction="lood")
     with pytest.raises(runner.RunnerError, match="none is given"):
         runner.identify(columns=columns, robot="macro")
+
+
+@pytest.mark.parametrize("more", [("--dry-run",), ()])
+def test_an_arm_that_stands_still_is_refused_before_anything_is_stored(arm, log, tmp_path, cli, more):
+    noise = np.random.default_rng(2).normal(0.0, 1.0, (2, *log[1].shape))
+    rest = np.full((1, 3), 0.3)
+    held = arm.torques(rest, 0.0 * rest, 0.0 * rest)
+    still = (log[0], rest + 2e-4 * noise[0], 0.0 * log[2], 0.0 * log[3], held + 0.05 * noise[1])
+    path, columns = write_log(tmp_path, arm.model, still)
+    ending = cli("identify", path, "--columns", columns, "--robot", "macro", *more)
+    assert (ending.code, ending.out) == (2, "")
+    assert "the arm stands still: the speed of q" in ending.err
+    assert "times what the noise of its positions makes" in ending.err
+    assert not (tmp_path / "outputs").exists()
+
+
+@pytest.mark.parametrize("more", [("--dry-run",), ()])
+def test_too_few_rows_in_the_fit_are_refused_before_anything_is_stored(arm, tmp_path, cli, more):
+    t = np.arange(0.0, 4.0, 0.004)
+    share = np.clip((t - 2.0) / 0.2, 0.0, 1.0)[:, None]
+    q = 0.3 + 0.2 * share**3 * (10.0 - 15.0 * share + 6.0 * share**2) * np.ones(3)
+    dq = np.gradient(q, t, axis=0)
+    ddq = np.gradient(dq, t, axis=0)
+    path, columns = write_log(tmp_path, arm.model, (t, q, dq, ddq, arm.torques(q, dq, ddq)))
+    ending = cli("identify", path, "--columns", columns, "--robot", "macro", *more)
+    assert (ending.code, ending.out) == (2, "")
+    assert re.search(
+        r"too few rows are in the fit: \d+ of \d+, .* Needed: more than \d+, at different times", ending.err
+    )
+    assert not (tmp_path / "outputs").exists()
+
+
+def test_a_jump_of_a_joint_is_refused(arm, log, tmp_path, cli):
+    q = log[1].copy()
+    q[2000, 1] += 1.5
+    path, columns = write_log(tmp_path, arm.model, (log[0], q, *log[2:]))
+    ending = cli("identify", path, "--columns", columns, "--robot", "macro", "--dry-run")
+    assert ending.code == 2
+    assert "joint_q2 jumps by" in ending.err
+    assert "rad within 4 ms at 8 s after the first row. Correct or cut that row." in ending.err
+
+
+def test_a_delay_that_the_logs_do_not_tell_is_stored_and_said(made, tmp_path):
+    found = replace(made[2], folder=tmp_path / "identifications" / "a", delay=0.0, delay_half=None)
+    found.write()
+    assert open_identification(found.folder).delay_half is None
+    text = " ".join(method_lines(found))
+    assert "The logs do not determine the delay of the torques. Residuals" in text
+    assert "(not known how exactly)" in " ".join(method_lines(replace(found, delay=0.001)))
+
+
+def fields_with_numbers(thing):
+    return [each.name for each in fields(thing) if isinstance(getattr(thing, each.name), float)]
+
+
+@pytest.mark.parametrize("number", [np.nan, np.inf, -np.inf])
+def test_every_result_that_is_written_can_be_read(made, tmp_path, number):
+    """Each number that is not finite is either refused with its name, or read again."""
+    whole = replace(made[2], folder=tmp_path / "identifications" / "a")
+    spoilt = {name: replace(whole, **{name: number}) for name in fields_with_numbers(whole)}
+    for part in ("parameters", "joints", "alternatives", "logs"):
+        first, *rest = getattr(whole, part)
+        for name in fields_with_numbers(first):
+            spoilt[f"{part}.0.{name}"] = replace(whole, **{part: [replace(first, **{name: number}), *rest]})
+    readable = {"delay_half", "parameters.0.file"}
+    assert readable < spoilt.keys()
+    assert len(spoilt) > 20
+    for name in spoilt.keys() - readable:
+        with pytest.raises(runner.RunnerError, match=f"identification: {name}: "):
+            spoilt[name].write()
+        assert not whole.folder.exists()
+    for name in readable:
+        spoilt[name].write()
+        assert open_identification(whole.folder).robot == "macro"
+
+
+def test_no_parameter_is_said_in_words(made):
+    assert "The logs determine no parameter." in list(answer_lines(replace(made[2], parameters=[])))
 
 
 def test_joints_in_another_order_are_asked_for(arm, log, tmp_path, cli):
