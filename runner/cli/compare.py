@@ -220,17 +220,19 @@ def _compare_recording(given: Sequence[Path], recordings: Sequence[Path], option
     from runner import store
     from runner.base import progress
     from runner.recordings.compare import compare_recording
+    from runner.recordings.equations import check_jumps
 
     progress.begin("reading runs")
     run = store.open_run(folders[0])
-    _print_recording(compare_recording(run, recordings[0], options.columns, options.fill_gaps or 0.0), options)
+    found = compare_recording(run, recordings[0], options.columns, options.fill_gaps or 0.0)
+    check_jumps(found.model, found.recording)
+    _print_recording(found, options)
 
 
 def _replay(recording: Path, options: Namespace) -> None:
     """Make the run of a log, and compare it with the log."""
     from runner.cli.replay import replay
     from runner.config.compose.files import outputs_dir
-    from runner.doctor.log import LONGEST_GAP
     from runner.recordings.compare import compare_recording
 
     made = replay(
@@ -240,6 +242,7 @@ def _replay(recording: Path, options: Namespace) -> None:
         options.controller or "computed_torque",
         options.columns,
         options.config_dir,
+        options.fill_gaps or 0.0,
     )
     for note in made.notes:
         print(one_line(f"runner: motion: {note}"), file=sys.stderr)
@@ -251,7 +254,7 @@ def _replay(recording: Path, options: Namespace) -> None:
         made.run,
         recording,
         made.columns,
-        options.fill_gaps or LONGEST_GAP,
+        options.fill_gaps or 0.0,
         not made.commanded,
         made.recording,
     )

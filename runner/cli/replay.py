@@ -10,10 +10,11 @@ from runner.assembly.validation import validate
 from runner.base.atomic import write_atomically
 from runner.base.errors import RunnerError
 from runner.config.compose.compose import compose
-from runner.doctor.log import examine_log
+from runner.doctor.log import examine_log, map_of
 from runner.doctor.log_files import MAP, MOTION, map_text
-from runner.recordings.columns_map import read_map
-from runner.recordings.recording import Recording
+from runner.recordings.columns_map import ColumnsMap, read_map
+from runner.recordings.equations import check_jumps
+from runner.recordings.recording import LONGEST_FILLED, Recording, to_recording
 from runner.store import Run
 from runner.sweeps import job
 from runner.sweeps.arm import arm_of
@@ -31,7 +32,7 @@ class Replay:
         columns: The column map that was used.
         commanded: Whether the run follows commanded positions; otherwise it follows the measured ones.
         notes: What was done to make the motion, and the error that it makes.
-        recording: The signals of the log; None where gaps were filled, which the doctor does without asking.
+        recording: The signals of the log.
     """
 
     run: Run
@@ -48,6 +49,7 @@ def replay(
     controller: str = "computed_torque",
     columns: Path | None = None,
     config_dirs: Sequence[Path] = (),
+    fill_gaps: float = 0.0,
 ) -> Replay:
     """Simulate the motion of a log with a model of the arm, in closed loop, or find the stored run.
 
@@ -58,13 +60,19 @@ def replay(
         controller: Name of the controller, as in `controller=NAME`.
         columns: Column map; None for the one that the doctor proposes.
         config_dirs: Config folders of the user.
+        fill_gaps: Longest gap of the log that is filled, in s; 0 for none.
 
     Raises:
-        RunnerError: if the log cannot be read, or has open questions; names them.
+        RunnerError: if the log cannot be read, has longer gaps, a jump or open questions; names them.
         ConfigError: if the robot or controller does not exist, or the run cannot be made.
     """
+    if not 0.0 <= fill_gaps <= LONGEST_FILLED:
+        raise RunnerError(f"gaps of up to {LONGEST_FILLED:g} s can be filled; found {fill_gaps:g} s")
     model = arm_of(robot, config_dirs).model
     found = examine_log(log, model, given=columns)
+    recording = found.recording
+    if recording is not None:
+        check_jumps(model, recording)
     if found.motion is None:
         asked = (
             "; ".join(f"{one.place}: {one.text.rstrip('.')}" for one in found.questions)
@@ -73,7 +81,10 @@ def replay(
         raise RunnerError(
             f"{log}: {asked}. `runner doctor {log} --robot {robot} -o FOLDER` writes a map to complete for --columns"
         )
-    recording = found.recording
+    said = None if columns is None else read_map(columns, model.joint_names, model.joint_units)[0]
+    if recording is not None and recording.filled:  # by the doctor, up to LONGEST_FILLED without asking
+        own = ColumnsMap.model_validate(map_of(found, None, None)) if said is None else said
+        to_recording(found.table, own, recording.units, fill_gaps)
     if not (found.motion.commanded or (recording is not None and recording.of_kind("torque"))):
         raise RunnerError(f"{log}: has neither commanded positions nor torques, so that a replay says nothing.")
     texts = {MOTION: found.motion.text} | ({MAP: map_text(found, None, None)} if columns is None else {})
@@ -81,7 +92,6 @@ def replay(
     folder = outputs / FOLDER / digest
     for name, text in texts.items():
         write_atomically(folder / name, text.encode())
-    said = None if columns is None else read_map(columns, model.joint_names, model.joint_units)[0]
     carried = said.payload.overrides if said is not None and said.payload is not None else ()
     overrides = (
         f"robot={robot}",
@@ -93,5 +103,4 @@ def replay(
         *carried,
     )
     run, _ = job.perform(job.RunJob(with_long_motion(validate(compose(overrides, config_dirs)))))
-    whole = recording if recording is not None and not recording.filled else None
-    return Replay(run, columns or folder / MAP, found.motion.commanded, found.motion.notes, whole)
+    return Replay(run, columns or folder / MAP, found.motion.commanded, found.motion.notes, recording)

@@ -214,6 +214,35 @@ def test_bad_replays_end_with_one_sentence(cli, tmp_path, words, told):
     assert not (tmp_path / "outputs").exists()
 
 
+@pytest.mark.costs(8)
+def test_a_replay_fills_gaps_only_if_asked_and_rejects_jumps(cli, tmp_path):
+    write_log(tmp_path / "log.csv")
+    header, *lines = (tmp_path / "log.csv").read_text().splitlines()
+    period = float(lines[1].split(",")[0]) - float(lines[0].split(",")[0])
+    cut, half = round(0.06 / period), len(lines) // 2
+    gap = [header, *lines[:half], *lines[half + cut :]]
+    (tmp_path / "gap.csv").write_text("\n".join(gap) + "\n")
+    cells = lines[half].split(",")
+    cells[header.split(",").index("actual_q_1")] = "3.0"
+    (tmp_path / "jump.csv").write_text("\n".join([header, *lines[:half], ",".join(cells), *lines[half + 1 :]]) + "\n")
+    for words, told in (
+        (
+            ("gap.csv",),
+            r"rows are missing for 0\.07 s, where rows are 0\.01 s apart; `--fill-gaps 70ms` fills",
+        ),
+        (("gap.csv", "--fill-gaps", "20ms"), r"rows are missing for 0\.07 s"),
+        (("gap.csv", "--fill-gaps", "5s"), r"gaps of up to 0\.1 s can be filled; found 5 s"),
+        (("jump.csv",), r"jump\.csv: actual_q_1 jumps by .* rad within .* Correct or cut that row\."),
+    ):
+        ending = cli("compare", *words, "--robot", "macro")
+        assert ending.code == 2
+        assert re.search(told, ending.err)
+        assert not (tmp_path / "outputs").exists()
+    ending = cli("compare", "gap.csv", "--robot", "macro", "--fill-gaps", "80ms")
+    assert ending.code == 0
+    assert "; 1 gap of up to 70 ms is filled" in ending.out
+
+
 @pytest.mark.costs(3)
 def test_a_log_of_positions_alone_is_not_replayed(cli, tmp_path):
     write_log(tmp_path / "log.csv", commands=False)
