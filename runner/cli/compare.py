@@ -220,12 +220,10 @@ def _compare_recording(given: Sequence[Path], recordings: Sequence[Path], option
     from runner import store
     from runner.base import progress
     from runner.recordings.compare import compare_recording
-    from runner.recordings.equations import check_jumps
 
     progress.begin("reading runs")
     run = store.open_run(folders[0])
     found = compare_recording(run, recordings[0], options.columns, options.fill_gaps or 0.0)
-    check_jumps(found.model, found.recording)
     _print_recording(found, options)
 
 

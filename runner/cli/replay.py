@@ -13,7 +13,6 @@ from runner.config.compose.compose import compose
 from runner.doctor.log import examine_log, map_of
 from runner.doctor.log_files import MAP, MOTION, map_text
 from runner.recordings.columns_map import ColumnsMap, read_map
-from runner.recordings.equations import check_jumps
 from runner.recordings.recording import LONGEST_FILLED, Recording, to_recording
 from runner.store import Run
 from runner.sweeps import job
@@ -71,8 +70,6 @@ def replay(
     model = arm_of(robot, config_dirs).model
     found = examine_log(log, model, given=columns)
     recording = found.recording
-    if recording is not None:
-        check_jumps(model, recording)
     if found.motion is None:
         asked = (
             "; ".join(f"{one.place}: {one.text.rstrip('.')}" for one in found.questions)

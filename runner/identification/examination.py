@@ -18,7 +18,7 @@ from runner.identification.result import Untold
 from runner.identification.system import Layout
 from runner.recordings.columns_map import ColumnsMap, read_map
 from runner.recordings.consistency import check_consistency
-from runner.recordings.equations import STANDSTILL, check_jumps, check_moves
+from runner.recordings.equations import STANDSTILL
 from runner.recordings.recording import Recording, read_recording
 from runner.recordings.smoothing import cutoff
 from runner.robots.model import RobotModel
@@ -102,8 +102,6 @@ def read_question(
                 "`runner compare` identifies friction without it."
             )
         recording = read_recording(path, said, factors, fill_gaps)
-        check_jumps(model, recording)
-        check_moves(model, recording)
         verdict = check_consistency(said.loaded(model), recording)
         if verdict.questions:
             raise RunnerError(f"{columns}: {' '.join(verdict.questions)}")

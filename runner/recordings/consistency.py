@@ -22,6 +22,7 @@ from scipy.optimize import nnls
 
 from runner.base.arrays import FloatArray
 from runner.recordings.columns_map import Signal
+from runner.recordings.equations import find_jumps
 from runner.recordings.other_meanings import (
     MOVES,
     NO_GRAVITY,
@@ -78,7 +79,7 @@ def check_consistency(model: RobotModel, recording: Recording) -> LogVerdict:
     """
     joints = model.joint_names
     q = recording.positions(joints)
-    questions = [*_empty_torques(recording), *_slow_rows(recording)]
+    questions = [*_empty_torques(recording), *_slow_rows(recording), *find_jumps(model, recording)]
     if questions or q is None:
         return LogVerdict(tuple(questions), (), {})
     motion = _motion(recording, joints, q)

@@ -14,11 +14,10 @@ import pinocchio as pin
 from numpy.typing import NDArray
 
 from runner.base.arrays import FloatArray
-from runner.base.errors import RunnerError
 from runner.base.quantities import quantity
 from runner.recordings.columns_map import Signal
 from runner.recordings.recording import Recording
-from runner.recordings.smoothing import cutoff, derivative, evenly, low_pass
+from runner.recordings.smoothing import derivative, low_pass
 from runner.robots.model import RobotModel
 
 STANDSTILL = 0.05
@@ -37,7 +36,6 @@ _BEYOND = 5.0  # times the limit of a joint's speed: a jump
 _APART = 10.0  # times other steps of the joint, in the log and next to it: a jump
 _OTHERS = 0.01, 10  # share and least number of the steps that may be jumps
 _BESIDE = 5  # rows on each side that are next to a jump
-_STILL = 3.0  # times the speed that noise makes, below which a joint may stand still
 _ONE_WAY = 0.98  # of sgn behind the low-pass: below it the joint has just turned round
 FEWEST = 10
 """Fewest rows of a joint in each direction."""
@@ -174,17 +172,6 @@ def fastest_speed(speeds: FloatArray, period: float, frequency: float) -> FloatA
     return fastest
 
 
-def check_jumps(model: RobotModel, recording: Recording) -> None:
-    """Check that no joint jumps from one row to the next.
-
-    Raises:
-        RunnerError: if one does; names the column, the time and the size.
-    """
-    found = list(find_jumps(model, recording))
-    if found:
-        raise RunnerError(f"{recording.path}: {' '.join(found)}")
-
-
 def find_jumps(model: RobotModel, recording: Recording) -> Iterator[str]:
     """Yield a sentence for each joint whose position jumps between two rows, far beyond its speed limit.
 
@@ -222,34 +209,6 @@ def find_jumps(model: RobotModel, recording: Recording) -> Iterator[str]:
             f"{recording.columns[signal]} jumps by {quantity(float(sizes[row]), unit)} within "
             f"{quantity(float(times[row]), 's')} at {recording.t[row + 1]:.6g} s after the first row{more}{ratio}. "
             f"{'Correct or cut that row.' if returns else 'Cut the log there, or correct the column.'}"
-        )
-
-
-def check_moves(model: RobotModel, recording: Recording) -> None:
-    """Check that a joint moves faster than the noise of its positions makes it seem to.
-
-    White noise of deviation sigma has a speed of 2 pi sigma sqrt(2 T f^3 / 3) behind a low-pass at f.
-
-    Raises:
-        RunnerError: if no joint does; names the one that comes nearest.
-    """
-    q, period = recording.positions(model.joint_names), recording.period
-    if q is None or recording.duration < 2.0 * _SPOILT / cutoff(period):
-        return
-    times = np.minimum(period * np.arange(int(recording.duration / period + 1e-6) + 1), recording.t[-1])
-    even, frequency = evenly(recording.t, q, times), cutoff(period)
-    smooth = low_pass(even, period, frequency)
-    edge = round(_SPOILT / (frequency * period))
-    speed = derivative(smooth, period)[edge : len(times) - edge]
-    above = 1.4826 * np.median(np.abs(even - smooth), axis=0) / np.sqrt(1.0 - 2.0 * frequency * period)
-    noise = above * 2.0 * np.pi * np.sqrt(2.0 * period * frequency**3 / 3.0)
-    shares = np.sqrt(np.mean(speed**2, axis=0)) / np.maximum(noise, 1e-300)
-    nearest = int(np.argmax(shares))
-    if shares[nearest] < _STILL:
-        raise RunnerError(
-            f"{recording.path}: the arm stands still: the speed of {model.joint_names[nearest]} is "
-            f"{shares[nearest]:.2g} times what the noise of its positions makes, that of other joints less. Needed: a "
-            "log of a motion."
         )
 
 

@@ -232,7 +232,7 @@ def test_a_replay_fills_gaps_only_if_asked_and_rejects_jumps(cli, tmp_path):
         ),
         (("gap.csv", "--fill-gaps", "20ms"), r"rows are missing for 0\.07 s"),
         (("gap.csv", "--fill-gaps", "5s"), r"gaps of up to 0\.1 s can be filled; found 5 s"),
-        (("jump.csv",), r"jump\.csv: actual_q_1 jumps by .* rad within .* Correct or cut that row\."),
+        (("jump.csv",), r"jump\.csv: log: actual_q_1 jumps by .* rad within .* Correct or cut that row\."),
     ):
         ending = cli("compare", *words, "--robot", "macro")
         assert ending.code == 2

@@ -264,7 +264,7 @@ def test_an_arm_that_stands_still_is_refused_before_anything_is_stored(arm, log,
     path, columns = write_log(tmp_path, arm.model, still)
     ending = cli("identify", path, "--columns", columns, "--robot", "macro", *more)
     assert (ending.code, ending.out) == (2, "")
-    assert "the arm stands still: the speed of q" in ending.err
+    assert "the arm stands still: no joint moves" in ending.err
     assert "times what the noise of its positions makes" in ending.err
     assert not (tmp_path / "outputs").exists()
 
