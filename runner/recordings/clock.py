@@ -16,6 +16,8 @@ _BACK = 1.0  # s: a row that is farther back belongs to another log
 _SWAPPED, _REPEATED = 0.05, 0.6  # of all rows
 _GAP = 2.5  # usual times between two rows
 _SHORTEST_GAP = 0.02  # s: half of what the low-pass of 10 Hz leaves of a motion takes longer
+_MANY = 0.05  # of the rows: from there on rows that repeat positions are left out
+_GOES_ON = 2.5  # resolutions of an encoder: a joint that steps by more on both sides of rows moves in them
 
 
 class Clock(NamedTuple):
@@ -83,6 +85,39 @@ def _rounding(t: FloatArray, steps: FloatArray) -> float:
         if off < _OFF_EVEN * rounding and np.abs(t / rounding - np.round(t / rounding)).max() < most:
             return rounding
     return 0.0
+
+
+def without_repeats(clock: Clock, positions: FloatArray) -> Clock:
+    """Return the rows without those that repeat the positions of the row before, if many do so in motion.
+
+    Rows between two changes of positions are a stretch. A joint moves in it if it steps in the same direction before
+    and after it, by some resolutions of its encoder: in slow motion it steps by one. Of a stretch in motion the first
+    row stays, unless it lasts too long for jitter. Of the other stretches, as at rest, each n-th row stays, where n is
+    the usual number of rows of a stretch in motion. So the rows of a state that is slower than its log are even.
+
+    Args:
+        clock: Times and rows.
+        positions: Positions in these rows, shape (M, n).
+    """
+    steps = np.diff(positions, axis=0)
+    first = np.append(0, np.flatnonzero((steps != 0.0).any(axis=1)) + 1)
+    resolution = np.min(np.abs(steps), axis=0, where=np.abs(steps) > 0.0, initial=np.inf)
+    changes = np.diff(positions[first], axis=0)
+    ways = np.sign(changes) * (np.abs(changes) > _GOES_ON * resolution)
+    moving = np.zeros(len(first), dtype=np.bool_)
+    moving[1:-1] = (ways[1:] * ways[:-1] > 0.0).any(axis=1)
+    if not moving.any():
+        return clock
+    counts = np.diff(np.append(first, len(clock.t)))
+    lasting = np.diff(np.append(clock.t[first], clock.t[-1]))
+    short = lasting <= longest_step(float(np.median(lasting[moving])))
+    usual = max(1, round(float(np.median(counts[moving]))))
+    if (counts[moving & short] - 1).sum() <= _MANY * counts[short].sum():
+        return clock
+    place = np.arange(len(clock.t)) - np.repeat(first, counts)
+    kept = np.where(np.repeat(moving & short, counts), place, place % usual) == 0
+    note = f"{np.sum(~kept):,} of {len(kept):,} rows repeat the positions of the row before and are left out"
+    return Clock(clock.t[kept], clock.rows[kept], [*clock.notes, note])
 
 
 def longest_step(period: float) -> float:

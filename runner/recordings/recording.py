@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 from runner.base.arrays import FloatArray
 from runner.base.errors import RunnerError
 from runner.base.tables import NumericTable
-from runner.recordings.clock import Clock, longest_step, read_clock
+from runner.recordings.clock import Clock, longest_step, read_clock, without_repeats
 from runner.recordings.columns_map import AMPERE, ColumnsMap, Factor, Holds, MappedColumn, Side, Signal, stacked
 from runner.recordings.files import read_log
 from runner.recordings.smoothing import CUTOFF, evenly
@@ -22,7 +22,7 @@ LONGEST_FILLED = 1.0 / CUTOFF
 
 _DECIMALS = 1e-6  # relative error of differences of decimal times
 _OTHER_RATE = 0.01  # relative difference from the rate that is said
-_STALE = 0.05  # of the rows: from there on rows that repeat the one before are left out
+_NEW = 0.5  # of the rows that are left out, from which on a column does not repeat in them
 _NEAR_A_TURN = 0.25  # of a turn: what a step from one row to the next may differ from it, if it is a jump
 
 
@@ -112,15 +112,15 @@ def to_recording(
     table = table.of([*([] if time is None else [time]), *said.columns], time)
     if len(table) < FEWEST_ROWS:
         raise RunnerError(f"{path}: too short: {len(table)} rows; needed: {FEWEST_ROWS} or more")
-    clock = _clock(table, said, factors)
-    clock = _without_stale(table, said, clock)
+    every = _clock(table, said, factors)
+    clock = _without_repeats(table, said, every)
     t, notes = clock.t, [*table.notes, *clock.notes]
     if len(t) < FEWEST_ROWS:
         raise RunnerError(f"{path}: too short: {len(t)} rows at different times; needed: {FEWEST_ROWS} or more")
     filled = _gaps(table, "rows are", clock, np.arange(len(t)), np.diff(t) > longest_step(_period(t)), fill_gaps)
     own: dict[Signal, FloatArray] = {}
     for name, column in said.columns.items():
-        numbers, jumps = _unwrapped(table.columns[name][clock.rows], column, factors[name])
+        numbers, jumps = _unwrapped(_of_rows(table.columns[name], column, said, every, clock), column, factors[name])
         if jumps:
             notes.append(f"{name} jumps by a turn {jumps} times: the jumps are removed")
         values = _in_si(table, name, numbers - column.zero, factors[name], clock)
@@ -165,18 +165,37 @@ def _clock(table: NumericTable, said: ColumnsMap, factors: Mapping[str, Factor])
     return clock
 
 
-def _without_stale(table: NumericTable, said: ColumnsMap, clock: Clock) -> Clock:
-    """Leave out rows that repeat the positions of the row before in the midst of motion, if there are many."""
+def _without_repeats(table: NumericTable, said: ColumnsMap, every: Clock) -> Clock:
+    """Leave out rows that repeat positions in motion, if there are many; the note names what else they hold."""
     moving = [name for name, column in said.columns.items() if column.signal.kind in ("position", "tip")]
-    if said.time is None or not moving:
+    if not moving:
+        return every
+    clock = without_repeats(every, np.column_stack([table.columns[name][every.rows] for name in moving]))
+    if clock is every:
         return clock
-    values = np.column_stack([table.columns[name][clock.rows] for name in moving])
-    same = (np.diff(values, axis=0) == 0.0).all(axis=1)
-    stale = np.append(False, same) & ~np.append(np.append(False, False), same[:-1]) & ~np.append(same[1:], (True, True))
-    if stale.sum() <= _STALE * len(stale):
-        return clock
-    note = f"{stale.sum()} rows repeat the positions of the row before, in motion, and are left out"
-    return Clock(clock.t[~stale], clock.rows[~stale], [*clock.notes, note])
+    new = {column.signal.kind for name, column in said.columns.items() if _is_new(table.columns[name], every, clock)}
+    also = [word for kind, word in (("reference", "commands"), ("torque", "torques")) if kind in new]
+    note = f"{clock.notes[-1]}, with {' and '.join(also)} that do not repeat" if also else clock.notes[-1]
+    return clock._replace(notes=[*clock.notes[:-1], note])
+
+
+def _is_new(numbers: FloatArray, every: Clock, clock: Clock) -> bool:
+    """Return whether a column changes in the rows that are left out."""
+    left_out = ~np.isin(every.rows, clock.rows)
+    return bool(np.mean(np.diff(numbers[every.rows])[left_out[1:]] != 0.0) > _NEW) if left_out.any() else False
+
+
+def _of_rows(numbers: FloatArray, column: MappedColumn, said: ColumnsMap, every: Clock, clock: Clock) -> FloatArray:
+    """Return a column in the rows that stay.
+
+    A held torque that does not repeat acts only up to the next row of the log: it is taken from the middle of the time
+    to the next row that stays.
+    """
+    values = numbers[clock.rows]
+    if column.signal.kind != "torque" or not said.held or not _is_new(numbers, every, clock):
+        return values
+    middle = np.interp(clock.t + 0.5 * (_period(clock.t) - _period(every.t)), every.t, numbers[every.rows])
+    return np.where(np.isnan(values), np.nan, middle)
 
 
 def _unwrapped(numbers: FloatArray, column: MappedColumn, factor: Factor) -> tuple[FloatArray, int]:

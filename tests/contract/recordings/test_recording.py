@@ -69,7 +69,30 @@ def test_rows_that_repeat_the_one_before_are_left_out(tmp_path):
         write(tmp_path, ["t,a", *(f"{t},{value}" for t, value in enumerate(values))]), said(), FACTORS
     )
     assert found.signals[Q1] == pytest.approx(2.0 * np.sin(10.0 * found.t))
-    assert found.notes == ["38 rows repeat the positions of the row before, in motion, and are left out"]
+    assert found.notes == ["38 of 200 rows repeat the positions of the row before and are left out"]
+
+
+@pytest.mark.parametrize("k", [2, 4, 10])
+@pytest.mark.parametrize(("torque", "new"), [("held", False), ("held", True), ("instant", True)])
+@pytest.mark.parametrize("time", [{"time": {"column": "t", "unit": "ms"}}, {"rate": 1000.0}])
+def test_torques_and_commands_may_be_faster_than_positions(tmp_path, k, torque, new, time):
+    t = np.arange(2000.0)  # ms
+    held = t // k * k
+    columns = {"a": {"joint": "q1", "unit": "rad"}, "c": {"reference": "q1", "unit": "rad"},
+               "u": {"torque": "q1", "unit": "N m"}}  # fmt: skip
+    acts = (t if new else held) + (0.0 if torque == "instant" else 0.5 if new else 0.5 * k)  # when the torque acts
+    lines = np.column_stack([t, np.sin(0.003 * held), np.sin(0.003 * t), np.cos(0.002 * acts)])
+    path = write(tmp_path, ["t,a,c,u", *(",".join(f"{cell:.12g}" for cell in line) for line in lines)])
+    factors = {"t": Factor(1e-3, "s"), **dict.fromkeys("ac", Factor(1.0, "rad")), "u": Factor(1.0, "N m")}
+    found = read_recording(path, ColumnsMap(columns=columns, torque=torque, **time), factors)
+    assert found.period == pytest.approx(1e-3 * k)
+    inner = found.t[2:-2]
+    for kind in ("position", "reference"):
+        assert found.signals[Signal(kind, "q1")] == pytest.approx(np.sin(3.0 * found.t))
+    assert found.torque_at(Signal("torque", "q1"), inner) == pytest.approx(np.cos(2.0 * inner), abs=1e-4)
+    left_out = len(t) - len(found.t)
+    also = f", with commands{' and torques' * new} that do not repeat"
+    assert found.notes == [f"{left_out:,} of 2,000 rows repeat the positions of the row before and are left out{also}"]
 
 
 def keyed(**keys):
