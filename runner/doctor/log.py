@@ -10,7 +10,17 @@ from runner.base.errors import RunnerError
 from runner.base.sanitize import few
 from runner.base.tables import NumericTable
 from runner.doctor.finding import DoctorFinding
-from runner.doctor.log_meanings import BEYOND, UNNAMED, Meaning, meanings_of, time_of, unnamed
+from runner.doctor.log_meanings import (
+    BEYOND,
+    UNNAMED,
+    Meaning,
+    empty_commands,
+    empty_torques,
+    joint_columns,
+    meanings_of,
+    time_of,
+    unnamed,
+)
 from runner.doctor.log_motion import LogMotion, make_motion
 from runner.doctor.log_names import named, writer_of
 from runner.recordings.columns_map import ColumnsMap, MappedColumn, factors_of, read_map
@@ -84,7 +94,8 @@ def examine_log(
     if model is None:
         meanings = [Meaning(one.column, {"kind": one.kind}, one.reason) for one in names if one.kind != "time"]
         return LogExamination(table, writer_of(list(table.columns)), time, meanings, findings, None, None)
-    meanings = list(meanings_of(table, names, model, period, path))
+    columns = joint_columns(table, names, model.joint_names)
+    meanings = list(meanings_of(table, names, columns, model, period, path))
     positions = [one for one in meanings if "joint" in one.keys]
     if not positions:
         known = {one.column for one in names}
@@ -101,7 +112,19 @@ def examine_log(
             findings.append(DoctorFinding("ask", "time", "no column of the time is known", "say rate: in Hz"))
         return found
     said = ColumnsMap.model_validate(map_of(found, topic, episode))
-    return judge(found, model, said)
+    return _with_notes(judge(found, model, said), empty_torques(columns), empty_commands(columns))
+
+
+def _with_notes(found: LogExamination, torques: str, commands: str) -> LogExamination:
+    """Return an examination that notes columns without numbers, for the recording and for the motion."""
+    texts = {"torques": torques, "commands": commands}
+    findings = [*found.findings, *(DoctorFinding("note", place, text) for place, text in texts.items() if text)]
+    recording, motion = found.recording, found.motion
+    if torques and recording is not None:
+        recording = replace(recording, notes=(*recording.notes, torques))
+    if commands and motion is not None:
+        motion = replace(motion, notes=(*motion.notes, commands))
+    return replace(found, findings=findings, recording=recording, motion=motion)
 
 
 def _refuse_infinite(table: NumericTable, columns: Sequence[str]) -> None:

@@ -1,7 +1,7 @@
 """Meanings of a log's columns for an arm: each from its name and from its numbers, with what has to be asked."""
 
 import re
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence, Set
 from dataclasses import dataclass, replace
 from pathlib import Path
 
@@ -86,51 +86,135 @@ def _time_unit(column: Named, first: float, step: float) -> tuple[str, str, str]
     return units[0], f"{column.reason}; rows come at {rate(units[0]):.4g} Hz, which no other unit gives", ""
 
 
+@dataclass(frozen=True)
+class JointColumns:
+    """Columns of one signal of the joints.
+
+    Attributes:
+        filled: Those with numbers.
+        empty: The joint of each column without a number.
+        joints: The joint of each label.
+    """
+
+    filled: Sequence[Named]
+    empty: Mapping[str, str]
+    joints: Mapping[str, str]
+
+    @property
+    def empty_words(self) -> str:
+        """Words for the columns without numbers."""
+        return f"{few(list(self.empty))} {'has' if len(self.empty) == 1 else 'have'} no numbers"
+
+
+def joint_columns(table: NumericTable, names: Sequence[Named], joints: Sequence[str]) -> dict[str, JointColumns]:
+    """Return the columns of each signal of the joints, by its kind.
+
+    Args:
+        table: The log.
+        names: Its columns whose names have a meaning.
+        joints: The joints of the arm.
+
+    Raises:
+        RunnerError: if the log is of two arms, or has no positions of a joint although it has their column.
+    """
+    empty = {one.column for one in names if np.isnan(table.columns[one.column]).all()}
+    chosen: dict[str, JointColumns] = {}
+    for kind in ("position", "reference", "velocity", "torque", "current"):
+        groups: dict[str, list[Named]] = {}
+        for one in names:
+            if one.kind == kind:
+                groups.setdefault(one.group, []).append(one)
+        best = max(groups.values(), key=lambda group: _count_filled(group, empty, joints), default=[])
+        if best:
+            chosen[kind] = _columns_of(table.path, best, empty, joints)
+    positions = chosen.get("position")
+    if "reference" in chosen and (positions is None or not positions.filled):
+        positions = chosen["reference"]
+    if positions is not None and positions.filled and positions.empty:
+        raise RunnerError(
+            f"{table.path}: {positions.empty_words}: no position of {few(list(positions.empty.values()))}. Allowed: "
+            "a log with the positions of all joints, or `--columns MAP` without the column."
+        )
+    return chosen
+
+
+def _count_filled(group: Sequence[Named], empty: Set[str], joints: Sequence[str]) -> int:
+    return min(sum(one.column not in empty for one in group), len(joints))
+
+
+def _columns_of(path: Path, group: Sequence[Named], empty: Set[str], joints: Sequence[str]) -> JointColumns:
+    """Return the columns of a group; columns without numbers have a joint, too, so that the others keep theirs."""
+    filled = [one for one in group if one.column not in empty]
+    try:
+        of = _joints_of(path, [one.label for one in group], joints)
+    except RunnerError:  # two arms, one of them without numbers
+        of = _joints_of(path, [one.label for one in filled], joints)
+    alone = of if len(filled) == len(group) else _joints_of(path, [one.label for one in filled], joints)
+    of = alone if len(alone) > len(of) else of
+    return JointColumns(
+        filled, {one.column: of[one.label] for one in group if one.column in empty and one.label in of}, of
+    )
+
+
+def empty_torques(columns: Mapping[str, JointColumns]) -> str:
+    """Return a note on the torques without numbers; empty if all have some."""
+    found = columns.get("torque")
+    if found is None or not found.empty or ("current" in columns and not found.filled):
+        return ""
+    return f"{found.empty_words}: no torque of {few(list(found.empty.values()))}"
+
+
+def empty_commands(columns: Mapping[str, JointColumns]) -> str:
+    """Return a note on the commands without numbers, as the others are then not used; empty if all have some."""
+    found = columns.get("reference")
+    if found is None or not found.empty:
+        return ""
+    return f"{found.empty_words}; without all commands the motion follows the measured positions"
+
+
 def meanings_of(
-    table: NumericTable, names: Sequence[Named], model: RobotModel, period: float, path: Path
+    table: NumericTable,
+    names: Sequence[Named],
+    columns: Mapping[str, JointColumns],
+    model: RobotModel,
+    period: float,
+    path: Path,
 ) -> Iterator[Meaning]:
     """Yield the meaning of each column that a joint or the tip of an arm has.
 
     Args:
         table: The log.
         names: Its columns whose names have a meaning.
+        columns: Those of its joints.
         model: The arm.
         period: Time between two rows, in s; 0 if it is not known.
         path: Its path.
-
-    Raises:
-        RunnerError: if the log is of two arms.
     """
     joints = model.joint_names
-    chosen: dict[str, tuple[list[Named], dict[str, str]]] = {}
-    for kind in ("position", "reference", "velocity", "torque", "current"):
-        groups: dict[str, list[Named]] = {}
-        for one in names:
-            if one.kind == kind and not np.isnan(table.columns[one.column]).all():
-                groups.setdefault(one.group, []).append(one)
-        best = max(groups.values(), key=lambda group: min(len(group), len(joints)), default=[])
-        if best:
-            chosen[kind] = best, _joints_of(path, [one.label for one in best], joints)
+    chosen = {kind: found for kind, found in columns.items() if found.filled}
     if "position" not in chosen and "reference" in chosen:
-        commands, of_label = chosen.pop("reference")
-        chosen["position"] = [replace(one, reason=f"{one.reason}; {ONLY_COMMANDS}") for one in commands], of_label
-    if "torque" in chosen and len(chosen["torque"][1]) == len(joints):
+        commands = chosen.pop("reference")
+        own = [replace(one, reason=f"{one.reason}; {ONLY_COMMANDS}") for one in commands.filled]
+        chosen["position"] = replace(commands, filled=own)
+    if "reference" in chosen and chosen["reference"].empty:
+        chosen.pop("reference")
+    if "torque" in chosen and len(chosen["torque"].joints) == len(joints):
         chosen.pop("current", None)  # the torque is known without a constant
-    for kind, (group, of) in chosen.items():
-        speeds = chosen.get("velocity")
-        for one in group:
-            joint = of.get(one.label)
-            if joint is None or kind == "velocity":
+    speeds = chosen.pop("velocity", None)
+    speed_of = {} if speeds is None else {speeds.joints.get(one.label): one for one in reversed(speeds.filled)}
+    for kind, found in chosen.items():
+        for one in found.filled:
+            joint = found.joints.get(one.label)
+            if joint is None:
                 continue
             place = joints.index(joint)
-            speed = None if speeds is None else next((s for s in speeds[0] if speeds[1].get(s.label) == joint), None)
             if kind in ("position", "reference"):
                 key = "joint" if kind == "position" else "reference"
-                yield _position(table, one, key, joint, model, place, speed, period, path)
+                yield _position(table, one, key, joint, model, place, speed_of.get(joint), period, path)
             else:
                 yield _torque(table, one, joint, model, place)
     for one in names:
-        if one.kind == "tip":
+        if one.kind == "tip" and not np.isnan(table.columns[one.column]).all():
             yield Meaning(one.column, {"tip": one.label, "unit": one.unit or _length(table, one, model)}, one.reason)
 
 

@@ -6,6 +6,7 @@ from pathlib import Path
 
 import numpy as np
 import pandas as pd
+import pinocchio as pin
 
 START = 1_700_000_000_123_456_789  # ns
 
@@ -13,6 +14,17 @@ RTDE = {"t": "timestamp", "q": "actual_q_{}", "dq": "actual_qd_{}", "command": "
         "tau": "actual_current_as_torque_{}"}  # fmt: skip
 PLAIN = {"t": "t", "q": "q{}", "tau": "tau{}"}
 FRANKA = {"t": "time", "q": "state.q[{}]", "dq": "state.dq[{}]", "command": "state.q_d[{}]", "tau": "state.tau_J[{}]"}
+
+
+def arm_signals(arm):
+    """Return 4 s of a ur5e at 125 Hz, with friction."""
+    t = np.arange(0.0, 4.0, 0.008)
+    w = np.array([1.3, 1.9, 1.6, 2.2, 1.1, 2.6])
+    q = np.array([0.1, -1.4, 1.5, -1.5, -1.4, 0.2]) + 0.3 * (1.0 - np.cos(np.outer(t, w)))
+    dq, ddq = 0.3 * w * np.sin(np.outer(t, w)), 0.3 * w**2 * np.cos(np.outer(t, w))
+    data = arm.pin_model.createData()
+    tau = np.array([pin.rnea(arm.pin_model, data, *row) for row in zip(q, dq, ddq, strict=True)]) + dq + np.sign(dq)
+    return {"t": t, "q": q, "dq": dq, "tau": tau, "command": q}
 
 
 def frame(signals, names, first=0):

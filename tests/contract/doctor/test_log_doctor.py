@@ -5,7 +5,6 @@ import shutil
 
 import numpy as np
 import pandas as pd
-import pinocchio as pin
 import pytest
 import yaml
 from support import log_files as made
@@ -26,14 +25,7 @@ def arm():
 
 @pytest.fixture(scope="module")
 def signals(arm):
-    """Return 4 s of an arm at 125 Hz, with friction."""
-    t = np.arange(0.0, 4.0, 0.008)
-    w = np.array([1.3, 1.9, 1.6, 2.2, 1.1, 2.6])
-    q = np.array([0.1, -1.4, 1.5, -1.5, -1.4, 0.2]) + 0.3 * (1.0 - np.cos(np.outer(t, w)))
-    dq, ddq = 0.3 * w * np.sin(np.outer(t, w)), 0.3 * w**2 * np.cos(np.outer(t, w))
-    data = arm.pin_model.createData()
-    tau = np.array([pin.rnea(arm.pin_model, data, *row) for row in zip(q, dq, ddq, strict=True)]) + dq + np.sign(dq)
-    return {"t": t, "q": q, "dq": dq, "tau": tau, "command": q}
+    return made.arm_signals(arm)
 
 
 def csv(tmp_path, table, sep=",", name="log.csv", head="", decimal="."):

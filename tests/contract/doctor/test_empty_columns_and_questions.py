@@ -1,0 +1,115 @@
+"""`runner doctor LOG`: columns without numbers are named."""
+
+import numpy as np
+import pytest
+from support import log_files as made
+
+from runner.assembly.validation import validate
+from runner.base.errors import RunnerError
+from runner.config.compose.compose import compose
+from runner.doctor.log import examine_log
+
+RTDE = made.RTDE
+JOINT_STATES = {"t": "t", "q": "{}.feedback.position", "command": "{}.reference.position", "tau": "{}.feedback.effort"}
+
+
+@pytest.fixture(scope="module")
+def arm():
+    return validate(compose(["robot=ur5e"])).arm.model
+
+
+@pytest.fixture(scope="module")
+def signals(arm):
+    return made.arm_signals(arm)
+
+
+def write(tmp_path, table):
+    table.to_csv(tmp_path / "log.csv", index=False)
+    return tmp_path / "log.csv"
+
+
+def by_joint(signals, arm):
+    """Return a table whose columns have the names of the joints."""
+    table = made.frame(signals, JOINT_STATES)
+    return table.rename(columns=lambda name: f"{arm.joint_names[int(name[0])]}{name[1:]}" if "." in name else name)
+
+
+def recorded(found, kind):
+    return sorted(signal.of for signal in found.recording.of_kind(kind))
+
+
+def texts(found):
+    return [str(finding) for finding in found.findings]
+
+
+@pytest.mark.parametrize("place", range(6))
+def test_a_torque_without_numbers_leaves_those_of_the_other_joints(tmp_path, arm, signals, place):
+    column, joint = RTDE["tau"].format(place), arm.joint_names[place]
+    found = examine_log(write(tmp_path, made.frame(signals, RTDE).assign(**{column: np.nan})), arm)
+    assert recorded(found, "torque") == sorted(set(arm.joint_names) - {joint})
+    assert f"note    torques: {column} has no numbers: no torque of {joint}" in texts(found)
+    assert found.recording.notes[-1] == f"{column} has no numbers: no torque of {joint}"
+    assert found.motion.commanded
+    assert column not in [one.column for one in found.meanings]
+
+
+@pytest.mark.parametrize("place", range(6))
+def test_a_command_without_numbers_is_named_and_no_command_used(tmp_path, arm, signals, place):
+    column = RTDE["command"].format(place)
+    found = examine_log(write(tmp_path, made.frame(signals, RTDE).assign(**{column: np.nan})), arm)
+    said = f"{column} has no numbers; without all commands the motion follows the measured positions"
+    assert f"note    commands: {said}" in texts(found)
+    assert said in found.motion.notes
+    assert not found.motion.commanded
+    assert recorded(found, "reference") == []
+    assert len(recorded(found, "torque")) == 6
+
+
+@pytest.mark.parametrize("place", range(6))
+def test_a_position_without_numbers_is_refused_by_its_name(cli, tmp_path, arm, signals, place):
+    column, joint = RTDE["q"].format(place), arm.joint_names[place]
+    path = write(tmp_path, made.frame(signals, RTDE).assign(**{column: np.nan}))
+    ending = cli("doctor", path, "--robot", "ur5e")
+    assert ending.code == 2
+    assert f"log.csv: {column} has no numbers: no position of {joint}. Allowed: a log with the positions of all" in (
+        ending.err
+    )
+
+
+@pytest.mark.parametrize("kind", ["q", "command", "tau"])
+def test_columns_with_names_of_joints_may_be_empty_too(tmp_path, arm, signals, kind):
+    column = JOINT_STATES[kind].replace("{}", "elbow_joint")
+    path = write(tmp_path, by_joint(signals, arm).assign(**{column: np.nan}))
+    if kind == "q":
+        with pytest.raises(RunnerError, match=r"elbow_joint\.feedback\.position has no numbers"):
+            examine_log(path, arm)
+        return
+    found = examine_log(path, arm)
+    assert f"{column} has no numbers" in " ".join(texts(found))
+    assert len(recorded(found, "torque")) == (5 if kind == "tau" else 6)
+
+
+def test_a_signal_without_any_number_is_none(tmp_path, arm, signals):
+    table = made.frame(signals, RTDE)
+    for kind in ("tau", "dq", "q"):
+        table = table.assign(**dict.fromkeys(map(RTDE[kind].format, range(6)), np.nan))
+        found = examine_log(write(tmp_path, table), arm)
+        assert recorded(found, "torque") == []
+        assert found.recording.positions(arm.joint_names) == pytest.approx(signals["q"])
+    assert "actual_current_as_torque_5 have no numbers: no torque of" in " ".join(texts(found))
+    commands = made.frame(signals, RTDE).assign(**dict.fromkeys(map(RTDE["command"].format, range(6)), np.nan))
+    assert not examine_log(write(tmp_path, commands), arm).motion.commanded
+
+
+def test_an_empty_second_arm_is_none(tmp_path, arm, signals):
+    table = by_joint(signals, arm)
+    second = {f"right_{name}": np.nan for name in table.columns if name != "t"}
+    found = examine_log(write(tmp_path, table.assign(**second)), arm)
+    assert found.recording.positions(arm.joint_names) == pytest.approx(signals["q"])
+
+
+def test_a_seventh_column_does_not_move_the_others(tmp_path, arm, signals):
+    """An empty column in the midst of more columns than joints keeps its number: here joint 3 of 6."""
+    table = made.frame(signals, made.PLAIN, 1).assign(q7=0.0, tau7=0.0, tau3=np.nan)
+    found = examine_log(write(tmp_path, table), arm)
+    assert recorded(found, "torque") == sorted(set(arm.joint_names) - {"elbow_joint"})
