@@ -1,8 +1,8 @@
 """Finding of an examination: grade, location, message and remedy."""
 
 import re
-from collections.abc import Iterable
-from dataclasses import dataclass
+from collections.abc import Iterable, Sequence
+from dataclasses import dataclass, replace
 from typing import Literal
 
 from runner.base.sanitize import few
@@ -44,3 +44,25 @@ def together(findings: Iterable[DoctorFinding]) -> list[DoctorFinding]:
         for (grade, kind, text, remedy), names in places.items()
     ]
     return sorted(found, key=lambda each: GRADES.index(each.grade))
+
+
+def ask_once(findings: Iterable[DoctorFinding], names: Sequence[str], most: int) -> list[DoctorFinding]:
+    """Return findings, a question on several columns or joints as one, in the words for the first of them.
+
+    Args:
+        findings: Findings on a log.
+        names: Columns and joints. Questions that differ only in these and in numbers are one.
+        most: How many of the further columns a question names.
+    """
+    either = "|".join(re.escape(name) for name in sorted(names, key=len, reverse=True))
+    pattern = re.compile(rf"(?<!\w)(?:{either})(?!\w)|[-+]?\d+(?:\.\d+)?(?:e[-+]?\d+)?")
+    same: dict[object, list[DoctorFinding]] = {}
+    for place, each in enumerate(findings):
+        words = (pattern.sub("", each.text), each.remedy)
+        same.setdefault(words if each.grade == "ask" else place, []).append(each)
+    order = {name: place for place, name in enumerate(names)}
+    found = []
+    for first, *others in same.values():
+        rest = sorted((each.place.removeprefix("columns.") for each in others), key=lambda name: order.get(name, 0))
+        found.append(replace(first, place=f"{first.place} (also {few(rest, most)})") if rest else first)
+    return found

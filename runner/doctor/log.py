@@ -9,7 +9,7 @@ import numpy as np
 from runner.base.errors import RunnerError
 from runner.base.sanitize import few
 from runner.base.tables import NumericTable
-from runner.doctor.finding import DoctorFinding
+from runner.doctor.finding import DoctorFinding, ask_once
 from runner.doctor.log_meanings import (
     BEYOND,
     UNNAMED,
@@ -33,6 +33,7 @@ from runner.robots.model import RobotModel
 LONGEST_GAP = 0.1
 """Longest gap of a log that is filled, in s."""
 _SHORTEST = 2.0  # s
+_MOST_NAMED = 3  # further columns of a question that the column map repeats
 
 
 @dataclass(frozen=True)
@@ -95,6 +96,8 @@ def examine_log(
         meanings = [Meaning(one.column, {"kind": one.kind}, one.reason) for one in names if one.kind != "time"]
         return LogExamination(table, writer_of(list(table.columns)), time, meanings, findings, None, None)
     columns = joint_columns(table, names, model.joint_names)
+    if time is not None and time.asked:
+        period = 0.0  # what is said of derivatives follows from the answer
     meanings = list(meanings_of(table, names, columns, model, period, path))
     positions = [one for one in meanings if "joint" in one.keys]
     if not positions:
@@ -105,7 +108,8 @@ def examine_log(
         text = f"no column's name tells a position of {few(model.joint_names)}"
         findings.append(DoctorFinding("ask", "columns", text, "fill in the map, and delete lines of other columns"))
         positions = meanings
-    findings += [DoctorFinding("ask", one.column, one.asked) for one in meanings if one.asked and one.reason != UNNAMED]
+    asked = [DoctorFinding("ask", one.column, one.asked) for one in meanings if one.asked and one.reason != UNNAMED]
+    findings += ask_once(asked, [*table.columns, *model.joint_names], _MOST_NAMED)
     found = LogExamination(table, writer_of(list(table.columns)), time, meanings, findings, None, None)
     if (time is None or time.asked) or any(one.asked for one in positions):
         if time is None:
@@ -177,6 +181,7 @@ def judge(found: LogExamination, model: RobotModel, said: ColumnsMap, propose: b
     findings += [DoctorFinding("note", "tip", note) for note in verdict.notes]
     findings += _still(model, recording)
     findings += _beyond(model, recording)
+    findings = ask_once(findings, [*found.table.columns, *model.joint_names], model.nq)
     for joint, kinds in verdict.confirmed.items():
         text = f"its sign agrees with {' and '.join(_EVIDENCE[kind] for kind in kinds)}" if kinds else (
             "nothing in the log tells its sign"

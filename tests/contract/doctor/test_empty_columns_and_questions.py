@@ -1,6 +1,7 @@
-"""`runner doctor LOG`: columns without numbers are named."""
+"""`runner doctor LOG`: columns without numbers are named, and a question is asked once, for all its columns."""
 
 import numpy as np
+import pandas as pd
 import pytest
 from support import log_files as made
 
@@ -113,3 +114,51 @@ def test_a_seventh_column_does_not_move_the_others(tmp_path, arm, signals):
     table = made.frame(signals, made.PLAIN, 1).assign(q7=0.0, tau7=0.0, tau3=np.nan)
     found = examine_log(write(tmp_path, table), arm)
     assert recorded(found, "torque") == sorted(set(arm.joint_names) - {"elbow_joint"})
+
+
+def panda_python(tmp_path, signals):
+    lists = {"q": signals["q"], "q_d": signals["q"], "dq": signals["dq"], "tau_J": signals["tau"]}
+    rows = np.arange(500)
+    np.savez(tmp_path / "log.npz", time=rows, **{name: values[rows] for name, values in lists.items()})
+    return tmp_path / "log.npz"
+
+
+def test_an_open_time_is_the_only_question(cli, tmp_path, arm, signals):
+    path = panda_python(tmp_path, signals)
+    assert [question.place for question in examine_log(path, arm).questions] == ["time"]
+    ending = cli("compare", path, "--robot", "ur5e")
+    assert ending.code == 2
+    assert "log.npz: time: it counts rows by 1: is it ms, or a number of rows? say unit: ms, or rate: in Hz. " in (
+        ending.err
+    )
+    assert ending.err.count(";") == 0
+
+
+def test_a_unit_of_all_columns_is_asked_for_once(tmp_path):
+    motors = ("shoulder_pan", "shoulder_lift", "elbow_flex", "wrist_flex", "wrist_roll")
+    states = 90.0 * np.sin(np.outer(np.arange(120) / 30.0, [1.0, 1.3, 1.7, 1.1, 2.0]))
+    folder = made.write_lerobot(tmp_path / "set", states, motors)
+    model = validate(compose(["robot=so101"])).arm.model
+    (question,) = examine_log(folder, model).questions
+    names = [f"observation.state.{motor}.pos" for motor in motors]
+    assert question.place == f"{names[0]} (also {', '.join(names[1:4])} and 6 more)"
+    assert question.text.startswith("-66.11 to 90 is per cent of the calibrated range or degrees: say unit: deg")
+
+
+def test_a_sign_of_all_torques_is_asked_for_once_with_all_columns(cli, tmp_path, arm, signals):
+    path = write(tmp_path, made.frame({**signals, "tau": -signals["tau"]}, RTDE))
+    (question,) = examine_log(path, arm).questions
+    assert all(RTDE["tau"].format(place) in question.place for place in range(6))
+    assert question.text.count("opposite sign") == 1
+    assert cli("compare", path, "--robot", "ur5e").err.count("Say sign: -1") == 1
+
+
+def test_other_questions_stay_apart(tmp_path, arm, signals):
+    q = signals["q"] * np.array([1, 1, -1, 1, 1, 1])
+    tau = signals["tau"].copy()
+    tau[:, 0] = 0.0
+    table = made.frame({**signals, "q": q, "tau": tau}, made.PLAIN, 1)
+    assert [question.place for question in examine_log(write(tmp_path, table), arm).questions] == ["tau1", "columns.q3"]
+    per_cent = pd.DataFrame(table).rename(columns={f"tau{n}": f"tau{n} [%]" for n in range(1, 7)})
+    asked = examine_log(write(tmp_path, per_cent.assign(**{"tau1 [%]": 1.0})), arm).questions
+    assert [question.text[:24] for question in asked if "tau" in question.place] == ["per cent of a maximum, u"]
