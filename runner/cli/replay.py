@@ -75,9 +75,10 @@ def replay(
             "; ".join(f"{one.place}: {one.text.rstrip('.')}" for one in found.questions)
             or "no position of each joint is known"
         )
-        raise RunnerError(
-            f"{log}: {asked}. `runner doctor {log} --robot {robot} -o FOLDER` writes a map to complete for --columns"
-        )
+        given = "" if columns is None else f" --columns {columns}"
+        hint = f". `runner doctor {log} --robot {robot}{given} -o FOLDER` writes a map to complete for --columns"
+        of_rows = bool(found.questions) and all(one.place == "log" for one in found.questions)
+        raise RunnerError(f"{log}: {asked}{'.' if of_rows else hint}")
     said = None if columns is None else read_map(columns, model.joint_names, model.joint_units)[0]
     if recording is not None and recording.filled:  # by the doctor, up to LONGEST_FILLED without asking
         own = ColumnsMap.model_validate(map_of(found, None, None)) if said is None else said

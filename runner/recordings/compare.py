@@ -143,7 +143,8 @@ def compare_recording(
     moving = [signal for signal in recording.signals if signal.kind in ("position", "tip")]
     if not moving:
         raise RunnerError(f"{columns}: columns: needs the position of a joint, or a coordinate of the tip")
-    commands = [] if setting.desired_joints is None else recording.of_kind("reference")
+    followed = setting.desired_joints is not None and not follows_measured
+    commands = recording.of_kind("reference") if followed else []
     aligned = commands or moving
     offset = find_offset(
         recording.t,

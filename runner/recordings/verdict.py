@@ -188,6 +188,6 @@ def _untold(found: RecordingComparison, hidden: Sequence[str]) -> Iterator[str]:
     if hidden:
         yield f"torques of {', '.join(hidden)}, because the noise of the measured positions makes as large ones"
     if not found.lags:
-        yield "a lag of the arm, as it holds no commands"
+        yield "a lag of the arm, as no commands are known"
     if not found.recording.of_kind("torque"):
         yield "masses, as it holds no torques"

@@ -187,7 +187,7 @@ def test_the_cause_of_the_torques_differences_is_named(stored, compared, cause):
         r"Over 1.5 s the model predicts positions within .* rad for 95 % of the time \(q\d\) and torques to", text
     )
     assert re.search(rf"explains: .*{cause} (9\d|100) %", text)
-    assert "a lag of the arm, as it holds no commands" in text
+    assert "a lag of the arm, as no commands are known" in text
 
 
 def test_the_accuracy_is_that_of_the_differences(stored, compared):
