@@ -17,6 +17,7 @@ from runner.trajectories.splines import interpolate
 _STEP = 0.01  # s between rows, at least
 _REST = 0.02  # of the largest speed: what is slower at an end is at rest
 _OVER, _OF_NOISE = 0.15, 6.0  # s in which it moves by more than 6 times the rms of the noise
+_EQUAL = 1e-9  # rad or m: what no encoder resolves
 _LEAD = 0.5  # s, in which a log that begins or ends in motion comes from rest or goes to it
 _MARGIN = 1e-3  # of a joint's range, kept from its limits
 _MOST = 40_000  # rows that are looked at
@@ -74,9 +75,10 @@ def make_motion(model: RobotModel, recording: Recording) -> LogMotion | None:
     off = np.abs(curve.orders[0](times - times[0] + _LEAD * moving[0]) - exact).max(axis=0)
     worst = int(np.argmax(off / np.maximum(np.ptp(exact, axis=0), 1e-9)))
     unit = model.joint_units[worst]
+    apart = f"differ from the log by up to {quantity(float(off[worst]), unit)} at {model.joint_names[worst]}"
     notes.append(
         f"{len(t)} rows, {quantity(step, 's')} apart, smoothed at {frequency:.2g} Hz; they "
-        f"differ from the log by up to {quantity(float(off[worst]), unit)} at {model.joint_names[worst]}"
+        f"{apart if off.max() > _EQUAL else 'are equal to the log'}"
     )
     if any(moving):
         notes.append(f"the log begins or ends in motion: {_LEAD:g} s from or to rest are added")
