@@ -223,3 +223,15 @@ def _scaled(value: float | None, factor: float, zeros: bool = False) -> str:
 
 def _with_unit(text: str, unit: str) -> str:
     return text if text == ROUNDED else f"{text} {unit}".strip()
+
+
+def share_of_larger(size: float, small: float, large: float) -> str:
+    """Return a difference in per cent of the larger value; 100 % only if the smaller one is 0.
+
+    The result is empty if the larger value is not known or rounding, the smaller one below zero, or the difference
+    larger than both.
+    """
+    if not (math.isfinite(large) and large > ROUNDING and small >= 0.0 and size <= large):
+        return ""
+    share = 100.0 * size / large
+    return f"{number(share, 2) if share < 99.5 else number(share if small == 0.0 else min(share, 99.9), 3)} %"

@@ -23,6 +23,7 @@ if TYPE_CHECKING:
     from runner.recordings.compare import RecordingComparison
     from runner.reporting.document import Document
     from runner.store import Run, Sweep
+    from runner.sweeps.measurements import Measurements
 
 # A missing file of such a name is called a log.
 _LOGS = (".csv", ".tsv", ".txt", ".log", ".parquet", ".zip", ".npz", ".bag", ".mcap", ".db3")
@@ -114,6 +115,7 @@ def _compare(options: Namespace) -> None:
     if options.by:
         for option in ("by", "within"):
             for name in getattr(options, option) or ():
+                _check_levels(sweeps[0], first, name)
                 find_axis(first.axes, name, f"--{option}")
         keep_question(sweeps[0], options.by[0])
         by_axis = {axis: compare_levels(first, axis, options.within or None, metrics) for axis in options.by}
@@ -168,6 +170,20 @@ def _question(thing: "Run | Sweep") -> str:
             f"({known}): `runner compare {folder} --by AXIS`"
         )
     return asked.name
+
+
+def _check_levels(sweep: "Sweep", stored: "Measurements", name: str) -> None:
+    """Check that the stored cells of a sweep still have several values of an axis that it was made over.
+
+    Raises:
+        RunnerError: If they do not; says how to make the others.
+    """
+    from runner.store.axes import axes_of
+
+    axes, _ = axes_of(sweep.overrides)
+    if name in {axis.name for axis in axes} - {axis.name for axis in stored.axes}:
+        known = f"{len(stored.hashes)} of {len(sweep.overrides)} cells can be read, with one value of {name}"
+        raise RunnerError(f"{sweep.folder}: {known}: nothing to compare. Make the others: `{stored.command}`")
 
 
 def _explain_mixture(run: "Run", sweep: "Sweep") -> str:

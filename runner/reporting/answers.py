@@ -14,7 +14,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from runner.base.quantities import ROUNDING, choose_unit, number, quantity
+from runner.base.quantities import ROUNDING, choose_unit, number, quantity, share_of_larger
 from runner.caveats.rounding_growth import SENSITIVE
 from runner.reporting.comparison.pairs import Pairs, compare, label_text
 from runner.reporting.limits import find_limit
@@ -25,8 +25,9 @@ from runner.statistics.conclusion import ALPHA, SHARE, conclusion_sign, larger_m
 
 PAIRS = (
     "A pair is one draw of both: the same seed and repetition, cells that share a draw by their mean. Differences are "
-    "Hodges-Lehmann estimates over the pairs, with the median of the larger side. The intervals of a metric hold "
-    f"together at {100 * (1 - ALPHA):g} % (signed ranks, Holm)."
+    "Hodges-Lehmann estimates over the pairs, with the median of the larger side. At most "
+    f"{100 * ALPHA:g} % of metrics without a difference get an answer (signed ranks, Holm); an interval has the level "
+    "of its own comparison."
 )
 """Meaning of the numbers of a comparison, once for each page."""
 
@@ -123,8 +124,7 @@ class AskedComparison:
     def full_names(self) -> tuple[str, str]:
         """The names; numbers with their axis, such as "controller.period=0.01"."""
         axis = self.pairs.axis if self.pairs else ""
-        first, second = (f"{axis}={name}" if axis else name for name in self.names)
-        return first, second
+        return (f"{axis}={self.names[0]}", f"{axis}={self.names[1]}") if axis else self.names
 
     @property
     def names(self) -> tuple[str, str]:
@@ -293,34 +293,30 @@ class Answer(AskedComparison):
 
     @cached_property
     def printed(self) -> PrintedNumbers:
-        """The numbers as strings: the printed difference and larger median give the printed per cent."""
-        found = self.comparison
-        size, whole = abs(found.difference), max(abs(one) for one in found.medians)
-        share = ""
-        if np.isfinite(size) and np.isfinite(whole) and whole > ROUNDING and "fraction" not in self.metric:
-            share = f"{number(100.0 * self._rounded(size) / self._rounded(whole), 2)} %"
+        """The numbers as strings."""
+        found, size = self.comparison, abs(self.comparison.difference)
+        share = "" if "fraction" in self.metric else share_of_larger(size, *sorted(found.medians))
         first, second = (self._quantity(one) if np.isfinite(one) else "never" for one in found.medians)
         amount = self._quantity(size) if np.isfinite(size) else "more than any number"
         return PrintedNumbers((first, second), amount, self._range(self.interval), share)
 
     @cached_property
     def _decimals(self) -> int:
-        """Decimals of all numbers: for two digits of the difference, or without an answer of its interval."""
+        """Decimals: for two digits of the difference and its printed share, or without an answer of its interval."""
         found, (factor, _) = self.comparison, self.scale
         shown = [found.difference] if self.sign else [found.difference, *(self.interval or ())]
         size, most = (
             factor * max((abs(one) for one in some if np.isfinite(one)), default=0.0) for some in (shown, found.medians)
         )
-        if self._differs_at_most(_EQUAL):
+        if self._differs_at_most(_EQUAL) or not size:
             size = most / 10.0  # three digits of the median
         decimals = 1 - math.floor(math.log10(size)) if size > 0.0 else 0
-        if most > 0.0:
-            decimals = min(decimals, _MOST_DIGITS - 1 - math.floor(math.log10(most)))
-        return max(0, decimals)
-
-    def _rounded(self, value: float) -> float:
-        """Return the printed value in SI units; the value itself if all its digits are rounded away."""
-        return round(self.scale[0] * value, self._decimals) / self.scale[0] or value
+        finest = max(0, _MOST_DIGITS - 1 - math.floor(math.log10(most))) if most > 0.0 else decimals
+        first = max(0, min(decimals, finest))
+        values = factor * abs(found.difference), *(factor * one for one in sorted(found.medians))
+        whole = share_of_larger(*values)
+        agree = (n for n in range(first, finest + 1) if share_of_larger(*(round(one, n) for one in values)) == whole)
+        return next(agree, first) if self.sign and np.isfinite(values).all() else first
 
     def _number(self, value: float) -> str:
         if not math.isfinite(value):

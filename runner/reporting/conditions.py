@@ -65,6 +65,9 @@ class ConditionAnswers:
             return " or ".join(self.best)
         if all(one.comparison.exact for one in self.answers):
             return "equal, exact"
+        words = {one.word.partition(" (")[0] for one in self.answers}
+        if len(words) == 1 and not words & {"no difference shown"}:
+            return min(words).partition(" for ")[0].removesuffix(" to say")
         counts = [one.pairs_that_tell for one in self.answers if not one.sign]
         known = [count for count in counts if count]
         return f"not shown ({number(float(max(known)), 2)} pairs would)" if known else "not shown"

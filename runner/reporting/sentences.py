@@ -1,5 +1,6 @@
 """Answers of a first screen in sentences, and their short table."""
 
+import math
 from collections import Counter
 from collections.abc import Sequence
 
@@ -50,6 +51,8 @@ def price(one: Answer, answers: Sequence[Answer]) -> str:
     if not cost.sign:
         return f"; no difference in {name} is shown"
     compared = "smaller" if cost.sign == one.sign else "larger"
+    if not math.isfinite(cost.comparison.difference):
+        return f"; its {name} is {compared}, as one of both is beyond every number"
     return f"; its {name} is {compared} by {cost.printed.amount}, of {cost.printed.values[cost.sign > 0]}"
 
 
@@ -89,7 +92,7 @@ def _tally(found: Sequence[ConditionAnswers]) -> str:
     for name, count in Counter(each.winner for each in found if each.winner).most_common():
         shares = [float(each.share.split()[0]) for each in found if each.winner == name and _is_plain(each.share)]
         low, high = (f"{end:g}" for end in (min(shares, default=0.0), max(shares, default=0.0)))
-        spread = f" ({low if low == high else f'{low} to {high}'} %)" if shares else ""
+        spread = f" ({low if low == high else f'{low} to {high}'} %)" if len(shares) == count else ""
         texts.append(f"{name} is smaller in {count} of {len(found)} conditions{spread}")
     others = Counter(each.word.partition(" (")[0] for each in found if not each.winner)
     rest = [f"{_LONG.get(word, word)} in {count}" for word, count in others.items()]

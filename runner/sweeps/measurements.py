@@ -143,8 +143,9 @@ class Measurements:
 
     @property
     def repetitions(self) -> int:
-        """Largest number of repetitions of a cell."""
-        return max((values.shape[1] for values in self.values.values()), default=1)
+        """Largest number of repetitions of a cell; if all failed, that of their configs."""
+        asked = [int(config["repetitions"]) for config, _ in self.configs] if not self.values else []
+        return max((values.shape[1] for values in self.values.values()), default=max(asked, default=1))
 
     def named(self, wanted: Sequence[str] | None) -> Sequence[str]:
         """Return the names of the wanted metrics, each once; all metrics for None.

@@ -1,5 +1,6 @@
 """Sentences of a challenge: for which families of choices its answer holds, where it ends, and what was left out."""
 
+from collections import Counter
 from collections.abc import Iterator, Sequence
 
 from runner.base.quantities import number
@@ -54,8 +55,8 @@ def answer_text(made: Challenge) -> str:
     if not question.sign:
         return f"no difference shown between {a} and {b}"
     effect = question.size if fresh is None or fresh.effect is None else fresh.effect
-    word = "smaller" if question.sign < 0 else "larger"
-    return f"{_size(effect, question.is_fraction)} {word} with {b} than with {a}".strip()
+    smaller, larger = (b, a) if question.sign < 0 else (a, b)  # the effect is a share of the larger one
+    return f"{_size(effect, question.is_fraction)} smaller with {smaller} than with {larger}".strip()
 
 
 def scope_sentences(made: Challenge) -> list[str]:
@@ -69,15 +70,18 @@ def scope_sentences(made: Challenge) -> list[str]:
         pairs = made.fresh.pairs
         said = f"{capital(title(question.metric))}{at}: the stored answer does not come back on fresh seeds"
         return [f"{said} ({pairs} pairs). Nothing else was tried: simulate more repetitions first."]
-    texts = [f"{head}{at}, on fresh seeds too ({made.fresh.pairs} pairs)."]
+    drawn = f"on fresh seeds too ({made.fresh.pairs} pairs)" if made.fresh.pairs > 1 else "exactly: nothing is drawn"
+    texts = [f"{head}{at}, {drawn}."]
     for kind in CLASSES:
         texts += _of_class(made, kind)
     texts += _together(made)
     if question.left:
         texts.append(f"{_count(question.left, 'other condition')} of the result not asked; --where chooses one.")
     if made.left_out:
-        names = dict.fromkeys(TITLES.get(one.family, one.family) for one in made.left_out)
-        texts.append(f"Left out: {', '.join(names)}.")
+        counts = Counter(TITLES.get(one.family, one.family) for one in made.left_out)
+        tried = Counter(TITLES.get(one.variation.family, one.variation.family) for one in made.found)
+        parts = [f"{few} of {few + tried[name]} {name}" if tried[name] else name for name, few in counts.items()]
+        texts.append(f"Left out: {', '.join(parts)}.")
     if cut := _cut(made):
         texts.append(f"Not tried within the budget of {made.budget}: {cut}.")
     return texts
@@ -191,13 +195,13 @@ def _of_class(made: Challenge, kind: Class) -> Iterator[str]:
     for one in found:
         families.setdefault(one.variation.family, []).append(one)
     whole = [name for name, some in families.items() if all(_word(one) in _FULL for one in some)]
+    verb = "Does not appear with" if not made.question.sign else "Holds for"
     if whole:
-        verb = "Does not appear with" if not made.question.sign else "Holds for"
         yield f"{verb} {', '.join(TITLES.get(name, name) for name in whole)}."
     rest = [one for one in found if one.variation.family not in whole]
     kept = [one for one in rest if _word(one) in _FULL]
     if kept:
-        yield f"Holds with {_labels(made, kept)}."
+        yield f"{verb.removesuffix(' for').removesuffix(' with')} with {_labels(made, kept)}."
     weaker = [f"{one.variation.label} ({_numbers(made, one)[0]})" for one in rest if _word(one) == "holds, weaker"]
     if weaker:
         yield f"Holds, but weaker, with {'; '.join(weaker)}."

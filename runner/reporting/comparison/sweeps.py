@@ -147,6 +147,8 @@ def compare_levels(
     check_metrics(metrics, measurements.values)
     pairs = level_pairs(measurements, axis, within or ())
     by_condition = [some for some in level_pairs(measurements, axis) if len(some.at) > len(within or ())]
+    if len(by_condition) == len(pairs) == 1 and len(by_condition[0]) == len(pairs[0]):
+        pairs = []  # the only condition with cells of both levels: it is named
     pairs += by_condition if len(by_condition) <= MOST_CONDITIONS else []
     if not pairs:
         raise RunnerError(

@@ -185,6 +185,8 @@ def compare_on_fresh_seed(tuning: Tuning) -> tuple[list[Answer], list[str]]:
     failed = [f"{name} {run.failure}." for name, run in zip(names, runs, strict=True) if run.failure]
     texts = sentences(answers) or [f"{why}."]
     drawn = f"Default and tuned on fresh draws: seed {seed}, {repetitions} repetitions; no trial was chosen by them."
+    if answers and all(one.comparison.exact for one in answers):
+        drawn = "Nothing is drawn in default and tuned: the compared values are those that chose the trial."
     return answers, [*texts[:1], *failed, drawn, *texts[1:]]
 
 

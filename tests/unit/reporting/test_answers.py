@@ -6,7 +6,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from runner.base.quantities import ROUNDING
+from runner.base.quantities import ROUNDING, share_of_larger
 from runner.reporting.answers import PAIRS, AskedComparison, judge
 from runner.statistics import compare_paired
 from runner.statistics.conclusion import ALPHA
@@ -125,11 +125,11 @@ def test_an_answer_tells_the_larger_value_the_share_and_the_interval():
     )
     assert answer.short_cells == ["1.00 m", "-0.50 m (-0.54 to -0.46 m)", "B 50 % smaller"]
     assert one(0.5 * APART).short_cells[2] == "A 33 % smaller"
-    assert "hold together at 95 %" in PAIRS
+    assert "At most 5 % of metrics without a difference get an answer" in PAIRS
 
 
 @pytest.mark.parametrize("seed", range(12))
-def test_the_printed_difference_and_value_give_the_printed_per_cent(seed):
+def test_the_printed_difference_and_value_give_the_true_per_cent(seed):
     """T10: "22 % smaller with 0.7 than with 0.85, by 0.19" must not be printed."""
     rng = np.random.default_rng(seed)
     size = 10.0 ** rng.uniform(-6, 3)
@@ -139,6 +139,15 @@ def test_the_printed_difference_and_value_give_the_printed_per_cent(seed):
     share, larger, unit, difference, other = found.groups()
     assert unit == other
     assert float(share) == float(f"{100.0 * float(difference) / float(larger):.2g}")
+    found = answer.comparison
+    assert float(share) == float(f"{100.0 * abs(found.difference) / max(found.medians):.2g}")
+
+
+def test_a_hundred_per_cent_is_said_of_zero_alone_and_never_more():
+    assert share_of_larger(0.97, 0.03, 1.0) == "97 %"
+    assert share_of_larger(0.9999, 1e-4, 1.0) == "99.9 %"
+    assert share_of_larger(1.0, 0.0, 1.0) == "100 %"
+    assert share_of_larger(1.04, 0.1, 1.0) == share_of_larger(0.5, -0.2, 0.3) == share_of_larger(1.0, 1.0, np.inf) == ""
 
 
 def test_what_draws_nothing_is_exact():

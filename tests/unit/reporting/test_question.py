@@ -219,7 +219,7 @@ def test_what_too_few_pairs_cannot_answer_is_left_out_with_one_line():
     answers = find_answers(sweep(lambda noise, law: 10.0 + law + 0.01 * drawn(8, law, noise), axes=axes))
     assert sentences(answers) == ["8 pairs are too few for 8 comparisons: 9 would do."]
     assert short_table(answers)[1] == [
-        ["largest tracking error", "7 conditions", "", "", "no difference shown in 7 of 7 conditions"]
+        ["largest tracking error", "7 conditions", "", "", "too few pairs in 7 of 7 conditions"]
     ]
     (part,) = pairs_section(answers).sections
     assert [block.text for block in part.blocks] == ["8 comparisons have too few pairs (8): 9 would do."]
