@@ -4,6 +4,7 @@ import re
 import shutil
 from collections import Counter
 from dataclasses import replace
+from types import SimpleNamespace
 
 import pytest
 from support.engines import ASKED
@@ -13,7 +14,7 @@ from runner.assembly.validation import validate
 from runner.base.dotted_keys import split_override
 from runner.config.compose.compose import compose
 from runner.reporting.challenge.question import read_question
-from runner.reporting.challenge.words import TITLES, scope_sentences
+from runner.reporting.challenge.words import TITLES, answer_text, scope_sentences
 from runner.reporting.mathml import faulty
 from runner.reporting.stored import compose_report
 from runner.statistics.scope import first_pairs
@@ -346,3 +347,12 @@ def test_a_section_of_a_plug_in_is_before_the_provenance(ended, own_section, tmp
     own_section("challenge", "f'{len(subject.sweep.hashes)} runs'")
     *_, own, _ = compose_report([ended.folder], output=tmp_path)[0].sections
     assert own.blocks[0].text.endswith(" runs")
+
+
+@pytest.mark.parametrize(
+    ("sign", "said"), [(-1, "29 % smaller with b than with a"), (1, "29 % smaller with a than with b")]
+)
+def test_a_share_of_the_larger_side_says_which_one_is_smaller(sign, said):
+    sides = [SimpleNamespace(name=name) for name in "ab"]
+    question = SimpleNamespace(sides=sides, sign=sign, size=0.29, is_fraction=False)
+    assert answer_text(SimpleNamespace(question=question, fresh=None)) == f"29 % {said}"

@@ -1,10 +1,13 @@
 """`runner compare SWEEP --by AXIS`: the levels of an axis within those of the others."""
 
 import shutil
+from types import SimpleNamespace
 
 import pytest
 
 import runner
+from runner.base.errors import RunnerError
+from runner.cli.compare import _check_levels
 
 TASK = ("robot=macro", "duration=0.05", "noise=thesis", "repetitions=8", "hydra.sweeper.workers=0")
 
@@ -130,3 +133,11 @@ def test_each_of_several_axes_is_compared(cli, folder):
     out = cli("compare", folder, "--by", "controller,gravity", "--metrics", "rms_torque").out
     heads = [line for line in out.splitlines() if "; by " in line]
     assert [head.partition("; by ")[2] for head in heads] == ["controller", "gravity"]
+
+
+def test_an_axis_whose_cells_are_gone_is_not_called_unknown():
+    sweep = SimpleNamespace(folder="s", overrides=[["controller=a"], ["controller=b"]])
+    stored = SimpleNamespace(axes=[], hashes=["1"], command="runner -m controller=a,b")
+    with pytest.raises(RunnerError, match=r"s: 1 of 2 cells can be read, with one value of controller: nothing to"):
+        _check_levels(sweep, stored, "controller")
+    _check_levels(sweep, stored, "robot")
