@@ -26,8 +26,8 @@ from runner.statistics.conclusion import ALPHA, SHARE, conclusion_sign, larger_m
 PAIRS = (
     "A pair is one draw of both: the same seed and repetition, cells that share a draw by their mean. Differences are "
     "Hodges-Lehmann estimates over the pairs, with the median of the larger side. At most "
-    f"{100 * ALPHA:g} % of metrics without a difference get an answer (signed ranks, Holm); an interval has the level "
-    "of its own comparison."
+    f"{100 * ALPHA:g} % of metrics without a difference get an answer (signed ranks, Holm); each interval has the "
+    "level of its comparison."
 )
 """Meaning of the numbers of a comparison, once for each page."""
 
