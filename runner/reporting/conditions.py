@@ -66,11 +66,13 @@ class ConditionAnswers:
         if all(one.comparison.exact for one in self.answers):
             return "equal, exact"
         words = {one.word.partition(" (")[0] for one in self.answers}
-        if len(words) == 1 and not words & {"no difference shown"}:
-            return min(words).partition(" for ")[0].removesuffix(" to say")
+        few = all(word.startswith("too few") for word in words)
+        if len(words) == 1 and not few and words != {"no difference shown"}:
+            return min(words)
         counts = [one.pairs_that_tell for one in self.answers if not one.sign]
         known = [count for count in counts if count]
-        return f"not shown ({number(float(max(known)), 2)} pairs would)" if known else "not shown"
+        word, would = ("too few pairs", "would do") if few else ("not shown", "pairs would")
+        return f"{word} ({number(float(max(known)), 2)} {would})" if known else word
 
     @property
     def is_saturated(self) -> bool:

@@ -19,6 +19,7 @@ from runner.sweeps.differing import Resolver
 Cells = NDArray[np.intp]
 
 _SEED = '"seed": '
+_NEVER = "settling_time"  # end of the names of metrics whose missing value means that the arm never settled
 
 
 class Gathered:
@@ -153,11 +154,15 @@ class Gathered:
         """Return the values of each metric, shape (cells, repetitions); see Measurements."""
         width = max((values.shape[1] for values in self._values.values()), default=1)
         # A run without a finished repetition stores no metric.
-        lost = ~self._measured & np.array([bool(text) for text in self.failures], dtype=bool)
+        failed = np.array([bool(text) for text in self.failures], dtype=bool)
+        lost = ~self._measured & failed
         for name, values in self._values.items():
             missing = width - values.shape[1]
             whole = values if not missing else np.pad(values, ((0, 0), (0, missing)), constant_values=np.nan)
             whole[lost] = np.inf
+            if not name.endswith(_NEVER):
+                undefined = ~failed & np.isinf(whole).any(axis=1) & ~np.isfinite(whole).any(axis=1)
+                whole[undefined] = np.nan
             self._values[name] = whole
         return self._values
 

@@ -38,7 +38,8 @@ class Measurements:
         failures: Time, place and reason of the failure of each cell; empty for a successful one.
         units: Unit of each metric.
         values: Values of each metric, shape (cells, repetitions): infinite, that is beyond every number, if the
-            repetition failed or never settled; NaN if the run has no such metric or repetition.
+            repetition failed or never settled; NaN if the run has no such metric or repetition, or does not define it,
+            as a run that ends too early has no steady state.
         provenance: Plant, commit, machine, date and so on of the runs, each with its distinct values.
         caveats: Caveats of each cell as stored: rule, text, value, repetitions.
         caveat_rules: Digest and thresholds of the rules behind these caveats, each with the number of cells.

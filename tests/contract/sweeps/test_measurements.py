@@ -141,3 +141,11 @@ def test_a_run_is_a_sweep_of_one_cell(runs):
     assert (side.hashes, side.missing, side.folder) == ([run.hash], 0, run.folder)
     assert side.resolved("gravity") == [9.81]
     assert side.resolved("nothing.of.this") == [None]
+
+
+def test_a_metric_that_a_run_does_not_define_is_not_beyond_every_number(make_run):
+    """A run that ends before its motion has no steady state, and no settling time, which counts as never."""
+    run = make_run("robot=macro", "trajectory=quintic", "duration=0.2", "plant=rk4")
+    values = measure_run(run, "A").values
+    assert np.isnan(values["steady_state_error"]).all()
+    assert np.isinf(values["settling_time"]).all()
