@@ -8,6 +8,7 @@ import pytest
 
 from runner.base.errors import StoreError
 from runner.store import Run, open_sweep
+from runner.sweeps.job import run as simulate
 from runner.sweeps.measurements import measure, measure_run, measure_stored
 
 
@@ -143,9 +144,9 @@ def test_a_run_is_a_sweep_of_one_cell(runs):
     assert side.resolved("nothing.of.this") == [None]
 
 
-def test_a_metric_that_a_run_does_not_define_is_not_beyond_every_number(make_run):
+def test_a_metric_that_a_run_does_not_define_is_not_beyond_every_number(tmp_path):
     """A run that ends before its motion has no steady state, and no settling time, which counts as never."""
-    run = make_run("robot=macro", "trajectory=quintic", "duration=0.2", "plant=rk4")
+    run = simulate("robot=macro", "trajectory=quintic", "duration=0.2", "plant=rk4", f"outputs={tmp_path}")
     values = measure_run(run, "A").values
     assert np.isnan(values["steady_state_error"]).all()
     assert np.isinf(values["settling_time"]).all()
