@@ -11,7 +11,7 @@ from runner.base.arrays import FloatArray
 from runner.base.errors import RunnerError
 from runner.base.sanitize import few, quoted
 from runner.base.tables import NumericTable
-from runner.doctor.log_names import Named, plain_name
+from runner.doctor.log_names import Named, joints_by_name, plain_name
 from runner.recordings.lerobot import calibration_of
 from runner.robots.model import RobotModel
 from runner.schema.units import WRITTEN
@@ -234,14 +234,7 @@ def _length(table: NumericTable, one: Named, model: RobotModel) -> str:
 
 def _joints_of(path: Path, labels: Sequence[str], joints: Sequence[str]) -> dict[str, str]:
     """Return the joint of each label: by its name, else by its number, else by the order in the log."""
-    by_name: dict[str, str] = {}
-    for label in labels:
-        plain = plain_name(label)
-        fits = [joint for joint in joints if plain_name(joint) == plain]
-        fits = fits or [joint for joint in joints if plain.endswith(plain_name(joint))]
-        if len(fits) == 1:
-            by_name[label] = fits[0]
-    twice = [label for label in by_name if list(by_name.values()).count(by_name[label]) > 1]
+    by_name, twice = joints_by_name(labels, joints)
     if twice:
         raise RunnerError(f"{path}: holds two arms: {few(twice)} are the same joints. Use a log of one arm.")
     if len(by_name) == len(joints):

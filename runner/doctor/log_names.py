@@ -200,6 +200,7 @@ _TIMES = (
     "seconds",
 )
 _OF_TIME = ("time", "timestamp", "stamp", "zeit", "zeitstempel")  # words of a name, of a column that only grows
+_HANDS = ("finger", "gripper", "hand", "knuckle")  # words before a joint's name, of what is no arm
 _TIPS = re.compile(r"(tip|tcp|ee|eef|tool|end_effector|laser|ee_pos|tcp_pose|position)?_?(?P<label>[xyz])")
 
 
@@ -337,3 +338,33 @@ def plain_name(name: str) -> str:
     """Return a joint's name without separators, and without "joint" at its end."""
     plain = re.sub(r"[^a-z0-9]", "", name.lower())
     return plain.removesuffix("joint") or plain
+
+
+def joints_by_name(labels: Sequence[str], joints: Sequence[str]) -> tuple[dict[str, str], list[str]]:
+    """Return the joint of each label that ends with a joint's name, and the labels of two arms; empty for one.
+
+    Of labels for the same joint, those with one prefix for all joints count: `panda_joint1` and not
+    `panda_finger_joint1`.
+
+    Args:
+        labels: Names of joints, as the log has them.
+        joints: The joints of the arm.
+    """
+    arms: dict[str, dict[str, str]] = {}
+    single: dict[str, str] = {}
+    for label in dict.fromkeys(labels):
+        plain = plain_name(label)
+        fits = [joint for joint in joints if plain.endswith(plain_name(joint))]
+        for joint in fits:
+            arms.setdefault(plain.removesuffix(plain_name(joint)), {})[label] = joint
+        fits = [joint for joint in fits if plain_name(joint) == plain] or fits
+        if len(fits) == 1:
+            single[label] = fits[0]
+    complete = [prefix for prefix, found in arms.items() if set(found.values()) == set(joints)]
+    complete = [prefix for prefix in complete if not any(word in prefix for word in _HANDS)] or complete
+    known = {label: joint for prefix in complete for label, joint in arms[prefix].items()} or single
+    if len(set(known.values())) < len(known) and not complete:
+        most, *others = sorted(arms.values(), key=len, reverse=True)
+        if all(len(most) >= 2 * len(other) for other in others):
+            known = {label: joint for label, joint in single.items() if label in most or joint not in most.values()}
+    return known, [label for label, joint in known.items() if list(known.values()).count(joint) > 1]

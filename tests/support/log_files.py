@@ -17,10 +17,10 @@ FRANKA = {"t": "time", "q": "state.q[{}]", "dq": "state.dq[{}]", "command": "sta
 
 
 def arm_signals(arm):
-    """Return 4 s of a ur5e at 125 Hz, with friction."""
+    """Return 4 s of a ur5e, or a panda, at 125 Hz, with friction."""
     t = np.arange(0.0, 4.0, 0.008)
-    w = np.array([1.3, 1.9, 1.6, 2.2, 1.1, 2.6])
-    q = np.array([0.1, -1.4, 1.5, -1.5, -1.4, 0.2]) + 0.3 * (1.0 - np.cos(np.outer(t, w)))
+    w = np.array([1.3, 1.9, 1.6, 2.2, 1.1, 2.6, 1.7])[: arm.nq]
+    q = np.array([0.1, -1.4, 1.5, -1.5, -1.4, 0.2, 0.3])[: arm.nq] + 0.3 * (1.0 - np.cos(np.outer(t, w)))
     dq, ddq = 0.3 * w * np.sin(np.outer(t, w)), 0.3 * w**2 * np.cos(np.outer(t, w))
     data = arm.pin_model.createData()
     tau = np.array([pin.rnea(arm.pin_model, data, *row) for row in zip(q, dq, ddq, strict=True)]) + dq + np.sign(dq)

@@ -1,0 +1,92 @@
+"""`runner doctor LOG` on logs with other joints than the robot's: of a hand, of two arms, of another robot."""
+
+import pytest
+from support import log_files as made
+
+from runner.assembly.validation import validate
+from runner.base.errors import RunnerError
+from runner.config.compose.compose import compose
+from runner.doctor.log import examine_log
+from runner.doctor.log_names import joints_by_name
+
+SIX = [f"joint{place}" for place in range(1, 7)]
+ROS = {"t": "t", "q": "{}.position", "tau": "{}.effort"}
+
+
+@pytest.fixture(scope="module")
+def arm():
+    return validate(compose(["robot=ur5e"])).arm.model
+
+
+@pytest.fixture(scope="module")
+def panda():
+    return validate(compose(["robot=panda"])).arm.model
+
+
+@pytest.fixture(scope="module")
+def of_panda(panda):
+    return made.arm_signals(panda)
+
+
+def write(tmp_path, table):
+    table.to_csv(tmp_path / "log.csv", index=False)
+    return tmp_path / "log.csv"
+
+
+def with_hand(signals, prefix, hand):
+    """Return a table as a driver of a Panda with its hand publishes it; the fingers have no torque."""
+    table = made.frame(signals, ROS)
+    table.columns = [f"{prefix}{int(c[0]) + 1}{c[1:]}" if "." in c else c for c in table.columns]
+    fingers = {f"{hand}{k}.{kind}": 0.01 * k for k in (1, 2) for kind in ("position", "effort")}
+    return table.assign(**fingers)
+
+
+@pytest.mark.parametrize(
+    ("prefix", "hand"), [("panda_joint", "panda_finger_joint"), ("joint", "finger_joint"), ("joint", "hand_joint")]
+)
+def test_the_joints_of_a_hand_are_no_second_arm(tmp_path, panda, of_panda, prefix, hand):
+    table = with_hand(of_panda, prefix, hand)
+    fingers_first = table[[table.columns[0], *reversed(table.columns[1:])]]
+    for each in (table, fingers_first):
+        found = examine_log(write(tmp_path, each), panda)
+        assert found.recording.positions(panda.joint_names) == pytest.approx(of_panda["q"])
+        assert not any(hand in one.column for one in found.meanings)
+        assert len(found.recording.of_kind("torque")) == 7
+
+
+def test_a_torque_that_is_missing_does_not_make_the_hand_an_arm(tmp_path, panda, of_panda):
+    table = with_hand(of_panda, "panda_joint", "panda_finger_joint").drop(columns="panda_joint7.effort")
+    assert len(examine_log(write(tmp_path, table), panda).recording.of_kind("torque")) == 6
+
+
+def of_arms(*prefixes, joints=SIX):
+    return [f"{prefix}{joint}" for prefix in prefixes for joint in joints]
+
+
+@pytest.mark.parametrize(
+    ("labels", "joints", "wanted", "twice"),
+    [
+        (of_arms("left_", "right_"), SIX, 12, 12),
+        (of_arms("", "right_"), SIX, 12, 12),
+        (of_arms("left_", "right_")[1:-1], SIX, 10, 8),  # neither arm is complete
+        (of_arms("left_", "right_")[1:], SIX, 6, 0),
+        ([*of_arms("", "finger_", joints=SIX[:2])], SIX[:2], 2, 0),
+        (of_arms("a_", "b_", joints=SIX[:2]), SIX[:2], 4, 4),
+        (["base_joint1", "arm_joint2", "arm_joint3"], SIX[:3], 3, 0),
+        (["base_joint1", *of_arms("arm_")[1:], "tool_joint2"], SIX, 6, 0),
+        (of_arms("x_", joints=[*SIX, "finger_joint1"]), [*SIX, "finger_joint1"], 7, 0),
+        (["left-joint1", "left_joint1", "left_joint2"], SIX[:2], 3, 2),
+        (["left-joint1", "left_joint1"], SIX[:2], 2, 2),
+    ],
+)
+def test_labels_of_one_arm_have_its_joints(labels, joints, wanted, twice):
+    known, doubled = joints_by_name(labels, joints)
+    assert (len(known), len(doubled)) == (wanted, twice)
+    assert all(label.endswith(joint) for label, joint in known.items())
+
+
+def test_two_whole_arms_are_refused(tmp_path, panda, of_panda):
+    table = with_hand(of_panda, "left_joint", "left_finger_joint")
+    both = table.assign(**{c.replace("left", "right"): table[c] for c in table.columns if c.startswith("left")})
+    with pytest.raises(RunnerError, match="holds two arms: left_joint1, left_joint2, "):
+        examine_log(write(tmp_path, both), panda)
