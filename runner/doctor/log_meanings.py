@@ -277,7 +277,8 @@ def _position(
         else:
             unit = fitting[0] if fitting else ""
         if not unit:
-            asked = f"{low:.4g} to {high:.4g} lies in the limits of {joint} neither in rad nor in deg; say its unit"
+            choices = "rad nor in deg" if si == "rad" else "m nor in mm"
+            asked = f"{low:.4g} to {high:.4g} lies in the limits of {joint} neither in {choices}; say its unit"
     factor = float(WRITTEN[si].get(unit, 1.0))
     if unit in fitting:
         reasons.append(f"{low * factor:.3g} to {high * factor:.3g} {si} lies in the limits of the joint")

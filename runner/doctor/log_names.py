@@ -43,7 +43,8 @@ class Named:
 class _Writer:
     """A program that writes logs: its name, a column by which it is known, and its columns.
 
-    Each is a pattern of names with the groups `label`, kind, unit and what a torque holds and where it is measured.
+    Each is a pattern of names with the groups `label`, kind, unit and what a torque holds and where it is measured. A
+    torque without a unit is in N m, or in N of a prismatic joint.
     `joints` are the names of columns with the name of the joint of each label.
     """
 
@@ -59,8 +60,8 @@ _RTDE: Sequence[_Column] = (
     (rf"actual_q{_J}", "position", "rad", "", ""),
     (rf"target_q{_J}", "reference", "rad", "", ""),
     (rf"actual_qd{_J}", "velocity", "rad/s", "", ""),
-    (rf"target_moment{_J}", "torque", "N m", "commanded", ""),
-    (rf"actual_current_as_torque{_J}", "torque", "N m", "", ""),
+    (rf"target_moment{_J}", "torque", "", "commanded", ""),
+    (rf"actual_current_as_torque{_J}", "torque", "", "", ""),
     (rf"actual_current{_J}", "current", "A", "", ""),
     (r"actual_TCP_pose_(?P<label>[012])", "tip", "m", "", ""),
 )
@@ -85,8 +86,8 @@ WRITERS: Sequence[_Writer] = (
             (r"(state\.|robot_state\.)?q[\[_. ]?(?P<label>\d+)\]?", "position", "rad", "", ""),
             (r"(state\.|robot_state\.)?q_d[\[_. ]?(?P<label>\d+)\]?", "reference", "rad", "", ""),
             (r"(state\.|robot_state\.)?dq[\[_. ]?(?P<label>\d+)\]?", "velocity", "rad/s", "", ""),
-            (r"(state\.|robot_state\.)?tau_J[\[_. ]?(?P<label>\d+)\]?", "torque", "N m", "torque", "link"),
-            (r"(state\.|robot_state\.)?tau_J_d[\[_. ]?(?P<label>\d+)\]?", "torque", "N m", "without_gravity", "link"),
+            (r"(state\.|robot_state\.)?tau_J[\[_. ]?(?P<label>\d+)\]?", "torque", "", "torque", "link"),
+            (r"(state\.|robot_state\.)?tau_J_d[\[_. ]?(?P<label>\d+)\]?", "torque", "", "without_gravity", "link"),
         ),
     ),
     _Writer(
@@ -97,10 +98,10 @@ WRITERS: Sequence[_Writer] = (
             (r"(?P<label>.+)\.reference\.position", "reference", "rad", "", ""),
             (r"(?P<label>.+)\.feedback\.position", "position", "rad", "", ""),
             (r"(?P<label>.+)\.feedback\.velocity", "velocity", "rad/s", "", ""),
-            (r"(?P<label>.+)\.feedback\.effort", "torque", "N m", "", ""),
+            (r"(?P<label>.+)\.feedback\.effort", "torque", "", "", ""),
             (r"(?P<label>(?!.*\.(reference|feedback)\.).+)\.position", "position", "rad", "", ""),
             (r"(?P<label>(?!.*\.(reference|feedback)\.).+)\.velocity", "velocity", "rad/s", "", ""),
-            (r"(?P<label>(?!.*\.(reference|feedback)\.).+)\.effort", "torque", "N m", "", ""),
+            (r"(?P<label>(?!.*\.(reference|feedback)\.).+)\.effort", "torque", "", "", ""),
         ),
     ),
     _Writer(
@@ -111,7 +112,7 @@ WRITERS: Sequence[_Writer] = (
             (r"field\.(desired|reference)\.positions(?P<label>\d+)", "reference", "rad", "", ""),
             (r"field\.((actual|feedback)\.)?positions?(?P<label>\d+)", "position", "rad", "", ""),
             (r"field\.((actual|feedback)\.velocities|velocity)(?P<label>\d+)", "velocity", "rad/s", "", ""),
-            (r"field\.((actual|feedback)\.)?effort(?P<label>\d+)", "torque", "N m", "", ""),
+            (r"field\.((actual|feedback)\.)?effort(?P<label>\d+)", "torque", "", "", ""),
         ),
         ("field.name{}", "field.joint_names{}"),
     ),
@@ -122,7 +123,7 @@ WRITERS: Sequence[_Writer] = (
             (r"(__)?time", "time", "s", "", ""),
             (r"/(.+/)?(?P<label>[^/]+)/position", "position", "rad", "", ""),
             (r"/(.+/)?(?P<label>[^/]+)/velocity", "velocity", "rad/s", "", ""),
-            (r"/(.+/)?(?P<label>[^/]+)/effort", "torque", "N m", "", ""),
+            (r"/(.+/)?(?P<label>[^/]+)/effort", "torque", "", "", ""),
         ),
     ),
     _Writer(

@@ -1,13 +1,17 @@
 """`runner doctor LOG` on logs with other joints than the robot's: of a hand, of two arms, of another robot."""
 
+import numpy as np
+import pandas as pd
 import pytest
 from support import log_files as made
+from support import strangers
 
 from runner.assembly.validation import validate
 from runner.base.errors import RunnerError
 from runner.config.compose.compose import compose
 from runner.doctor.log import examine_log
 from runner.doctor.log_names import joints_by_name
+from runner.robots.model import RobotModel
 
 SIX = [f"joint{place}" for place in range(1, 7)]
 ROS = {"t": "t", "q": "{}.position", "tau": "{}.effort"}
@@ -90,3 +94,21 @@ def test_two_whole_arms_are_refused(tmp_path, panda, of_panda):
     both = table.assign(**{c.replace("left", "right"): table[c] for c in table.columns if c.startswith("left")})
     with pytest.raises(RunnerError, match="holds two arms: left_joint1, left_joint2, "):
         examine_log(write(tmp_path, both), panda)
+
+
+@pytest.mark.parametrize("name", ["{}.effort", "/joint_states/{}/effort"])
+def test_a_force_of_a_prismatic_joint_is_in_newtons(tmp_path, name):
+    """A gantry, whose forces a program's table and not the column's name gives."""
+    gantry = RobotModel(strangers.MADE["gantry"], "tip")
+    t = np.arange(0.0, 4.0, 0.01)
+    position = name.replace("effort", "position")
+    table = pd.DataFrame({"time": t})
+    for place, joint in enumerate(gantry.joint_names):
+        table[position.format(joint)] = 0.2 * np.sin((1.0 + place) * t)
+        table[name.format(joint)] = 20.0 * np.cos(t)
+    found = examine_log(write(tmp_path, table), gantry)
+    assert {one.keys["unit"] for one in found.meanings if "torque" in one.keys} == {"N"}
+    assert not any("is not known" in finding.text for finding in found.findings)
+    said = table.rename(columns={name.format(joint): f"{joint}_effort [Nm]" for joint in gantry.joint_names})
+    said = said.rename(columns={position.format(joint): joint for joint in gantry.joint_names})
+    assert "its unit 'N m' is not known" in str(examine_log(write(tmp_path, said), gantry).questions)
