@@ -20,6 +20,7 @@ from runner.doctor.log_meanings import (
     meanings_of,
     time_of,
     unnamed,
+    without_repeats,
 )
 from runner.doctor.log_motion import LogMotion, make_motion
 from runner.doctor.log_names import named, writer_of
@@ -95,7 +96,7 @@ def examine_log(
     if model is None:
         meanings = [Meaning(one.column, {"kind": one.kind}, one.reason) for one in names if one.kind != "time"]
         return LogExamination(table, writer_of(list(table.columns)), time, meanings, findings, None, None)
-    columns = joint_columns(table, names, model.joint_names)
+    columns, repeats = without_repeats(table, joint_columns(table, names, model.joint_names))
     if time is not None and time.asked:
         period = 0.0  # what is said of derivatives follows from the answer
     meanings = list(meanings_of(table, names, columns, model, period, path))
@@ -114,9 +115,9 @@ def examine_log(
     if (time is None or time.asked) or any(one.asked for one in positions):
         if time is None:
             findings.append(DoctorFinding("ask", "time", "no column of the time is known", "say rate: in Hz"))
-        return found
+        return _with_notes(found, "", repeats)
     said = ColumnsMap.model_validate(map_of(found, topic, episode))
-    return _with_notes(judge(found, model, said), empty_torques(columns), empty_commands(columns))
+    return _with_notes(judge(found, model, said), empty_torques(columns), empty_commands(columns) or repeats)
 
 
 def _with_notes(found: LogExamination, torques: str, commands: str) -> LogExamination:

@@ -26,6 +26,8 @@ UNNAMED = "its name tells nothing"
 ONLY_COMMANDS = "commanded, the log has no measured positions"
 """Reason of positions that are the commanded ones."""
 
+_REPEATED = 0.99  # of the rows in which a joint or its command moves: its commands are copies of its positions
+_EQUAL = 1e-9  # of a joint's swing
 _COUNTS = 4096.0  # of a turn of the motors that LeRobot calibrates
 
 
@@ -170,6 +172,42 @@ def empty_commands(columns: Mapping[str, JointColumns]) -> str:
     if found is None or not found.empty:
         return ""
     return f"{found.empty_words}; without all commands the motion follows the measured positions"
+
+
+def without_repeats(table: NumericTable, columns: Mapping[str, JointColumns]) -> tuple[Mapping[str, JointColumns], str]:
+    """Return the columns without commands, if some of these repeat the measured positions, and a note on it."""
+    positions, commands = columns.get("position"), columns.get("reference")
+    if positions is None or commands is None or commands.empty:
+        return columns, ""
+    measured = {positions.joints.get(one.label): one.column for one in positions.filled}
+    repeated = [
+        one.column for one in commands.filled
+        if (column := measured.get(commands.joints.get(one.label, ""))) is not None
+        and _repeats(table.columns[one.column], table.columns[column])
+    ]  # fmt: skip
+    if not repeated:
+        return columns, ""
+    said = "repeats the measured positions: it is no command"
+    if len(repeated) > 1:
+        said = "repeat the measured positions: they are no commands"
+    some = "; without all commands the motion follows the measured positions"
+    text = f"{_span(repeated)} {said}{some if len(repeated) < len(commands.filled) else ''}"
+    return {kind: found for kind, found in columns.items() if kind != "reference"}, text
+
+
+def _repeats(commands: FloatArray, measured: FloatArray) -> bool:
+    """Return whether commands equal positions in the rows that differ from the row before."""
+    known = ~(np.isnan(commands) | np.isnan(measured))
+    commands, measured = commands[known], measured[known]
+    moves = np.flatnonzero((np.diff(commands) != 0.0) | (np.diff(measured) != 0.0)) + 1
+    if not len(moves):
+        return False
+    equal = np.abs(commands - measured)[moves] <= _EQUAL * np.ptp(measured)
+    return float(np.mean(equal)) >= _REPEATED
+
+
+def _span(columns: Sequence[str]) -> str:
+    return f"{columns[0]} to {columns[-1]}" if len(columns) > 2 else " and ".join(columns)
 
 
 def meanings_of(

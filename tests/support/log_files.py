@@ -24,7 +24,7 @@ def arm_signals(arm):
     dq, ddq = 0.3 * w * np.sin(np.outer(t, w)), 0.3 * w**2 * np.cos(np.outer(t, w))
     data = arm.pin_model.createData()
     tau = np.array([pin.rnea(arm.pin_model, data, *row) for row in zip(q, dq, ddq, strict=True)]) + dq + np.sign(dq)
-    return {"t": t, "q": q, "dq": dq, "tau": tau, "command": q}
+    return {"t": t, "q": q, "dq": dq, "tau": tau, "command": q + 0.008 * dq}
 
 
 def frame(signals, names, first=0):
@@ -138,7 +138,7 @@ def write_meca_zip(path: Path, signals):
 
 
 def write_lerobot(path: Path, states, names, rate=30.0, episodes=2):
-    """Write a LeRobot v3 data set: fixed-size lists of float32, several episodes in one file."""
+    """Write a LeRobot v3 data set: fixed-size lists of float32, several episodes; actions are 0.01 above the states."""
     import pyarrow as pa
     import pyarrow.parquet
 
@@ -149,11 +149,13 @@ def write_lerobot(path: Path, states, names, rate=30.0, episodes=2):
     (path / "meta" / "info.json").write_text(json.dumps(info))
     count = len(states)
     rows = np.tile(states, (episodes, 1)).astype(np.float32)
-    lists = pa.FixedSizeListArray.from_arrays(pa.array(rows.ravel()), len(names))
+    lists, actions = (
+        pa.FixedSizeListArray.from_arrays(pa.array(values.ravel()), len(names)) for values in (rows, rows + 0.01)
+    )
     index = np.repeat(np.arange(episodes), count)
     keep = np.r_[np.ones(count, bool), np.arange(count * (episodes - 1)) < count * (episodes - 1) - 10]
     table = pa.table({
-        "observation.state": lists, "action": lists,
+        "observation.state": lists, "action": actions,
         "timestamp": pa.array(np.tile(np.arange(count) / rate, episodes).astype(np.float32)),
         "frame_index": np.tile(np.arange(count), episodes), "episode_index": index,
     }).filter(pa.array(keep))  # fmt: skip

@@ -96,7 +96,8 @@ def test_a_signal_without_any_number_is_none(tmp_path, arm, signals):
         table = table.assign(**dict.fromkeys(map(RTDE[kind].format, range(6)), np.nan))
         found = examine_log(write(tmp_path, table), arm)
         assert recorded(found, "torque") == []
-        assert found.recording.positions(arm.joint_names) == pytest.approx(signals["q"])
+        known = signals["command" if kind == "q" else "q"]
+        assert found.recording.positions(arm.joint_names) == pytest.approx(known)
     assert "actual_current_as_torque_5 have no numbers: no torque of" in " ".join(texts(found))
     commands = made.frame(signals, RTDE).assign(**dict.fromkeys(map(RTDE["command"].format, range(6)), np.nan))
     assert not examine_log(write(tmp_path, commands), arm).motion.commanded

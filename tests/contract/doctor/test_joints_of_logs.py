@@ -23,6 +23,11 @@ def arm():
 
 
 @pytest.fixture(scope="module")
+def signals(arm):
+    return made.arm_signals(arm)
+
+
+@pytest.fixture(scope="module")
 def panda():
     return validate(compose(["robot=panda"])).arm.model
 
@@ -112,3 +117,37 @@ def test_a_force_of_a_prismatic_joint_is_in_newtons(tmp_path, name):
     said = table.rename(columns={name.format(joint): f"{joint}_effort [Nm]" for joint in gantry.joint_names})
     said = said.rename(columns={position.format(joint): joint for joint in gantry.joint_names})
     assert "its unit 'N m' is not known" in str(examine_log(write(tmp_path, said), gantry).questions)
+
+
+@pytest.mark.parametrize("unit", [1.0, 1.0 + 1e-12])
+def test_commands_that_repeat_the_measured_positions_are_none(tmp_path, arm, signals, unit):
+    copied = made.frame({**signals, "command": unit * signals["q"]}, made.RTDE)
+    found = examine_log(write(tmp_path, copied), arm)
+    said = "target_q_0 to target_q_5 repeat the measured positions: they are no commands"
+    assert [str(finding) for finding in found.findings if "commands" in finding.place] == [f"note    commands: {said}"]
+    assert said in found.motion.notes
+    assert not found.motion.commanded
+    assert not found.recording.of_kind("reference")
+
+
+def test_a_single_command_that_repeats_leaves_no_motion_of_commands(tmp_path, arm, signals):
+    commands = signals["command"].copy()
+    commands[:, 2] = signals["q"][:, 2]
+    found = examine_log(write(tmp_path, made.frame({**signals, "command": commands}, made.RTDE)), arm)
+    assert found.motion.notes[-1].startswith("target_q_2 repeats the measured positions: it is no command; without all")
+
+
+@pytest.mark.parametrize("rows", [0, 1])
+def test_commands_of_a_joint_at_rest_or_of_coarse_steps_are_commands(tmp_path, arm, signals, rows):
+    """Steps of 0.01 rad, a row late: most rows are equal, but not those of the steps."""
+    q, commands = signals["q"].copy(), signals["command"].copy()
+    if rows:
+        commands = 0.01 * np.round(q / 0.01)
+        q = np.vstack([commands[:rows], commands[:-rows]])
+    else:
+        q[:, 3] = commands[:, 3] = -1.5
+    assert (
+        examine_log(write(tmp_path, made.frame({**signals, "q": q, "command": commands}, made.RTDE)), arm).questions
+        == []
+    )
+    assert examine_log(tmp_path / "log.csv", arm).motion.commanded
