@@ -18,6 +18,7 @@ from runner.doctor.log_meanings import (
     empty_torques,
     joint_columns,
     meanings_of,
+    spare_positions,
     time_of,
     unnamed,
     without_repeats,
@@ -96,7 +97,8 @@ def examine_log(
     if model is None:
         meanings = [Meaning(one.column, {"kind": one.kind}, one.reason) for one in names if one.kind != "time"]
         return LogExamination(table, writer_of(list(table.columns)), time, meanings, findings, None, None)
-    columns, repeats = without_repeats(table, joint_columns(table, names, model.joint_names))
+    columns, repeats = without_repeats(table, joint_columns(table, names, model))
+    spare = spare_positions(columns, model)
     if time is not None and time.asked:
         period = 0.0  # what is said of derivatives follows from the answer
     meanings = list(meanings_of(table, names, columns, model, period, path))
@@ -115,20 +117,20 @@ def examine_log(
     if (time is None or time.asked) or any(one.asked for one in positions):
         if time is None:
             findings.append(DoctorFinding("ask", "time", "no column of the time is known", "say rate: in Hz"))
-        return _with_notes(found, "", repeats)
+        return _with_notes(found, "", repeats, spare)
     said = ColumnsMap.model_validate(map_of(found, topic, episode))
-    return _with_notes(judge(found, model, said), empty_torques(columns), empty_commands(columns) or repeats)
+    return _with_notes(judge(found, model, said), empty_torques(columns), empty_commands(columns) or repeats, spare)
 
 
-def _with_notes(found: LogExamination, torques: str, commands: str) -> LogExamination:
-    """Return an examination that notes columns without numbers, for the recording and for the motion."""
-    texts = {"torques": torques, "commands": commands}
+def _with_notes(found: LogExamination, torques: str, commands: str, spare: str) -> LogExamination:
+    """Return an examination with notes on columns that are not taken, for the recording and for the motion."""
+    texts = {"torques": torques, "commands": commands, "positions": spare}
     findings = [*found.findings, *(DoctorFinding("note", place, text) for place, text in texts.items() if text)]
     recording, motion = found.recording, found.motion
-    if torques and recording is not None:
-        recording = replace(recording, notes=(*recording.notes, torques))
-    if commands and motion is not None:
-        motion = replace(motion, notes=(*motion.notes, commands))
+    if recording is not None:
+        recording = replace(recording, notes=(*recording.notes, *filter(None, (spare, torques))))
+    if motion is not None:
+        motion = replace(motion, notes=(*motion.notes, *filter(None, (spare, commands))))
     return replace(found, findings=findings, recording=recording, motion=motion)
 
 

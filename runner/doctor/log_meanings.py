@@ -108,17 +108,19 @@ class JointColumns:
         return f"{few(list(self.empty))} {'has' if len(self.empty) == 1 else 'have'} no numbers"
 
 
-def joint_columns(table: NumericTable, names: Sequence[Named], joints: Sequence[str]) -> dict[str, JointColumns]:
+def joint_columns(table: NumericTable, names: Sequence[Named], model: RobotModel) -> dict[str, JointColumns]:
     """Return the columns of each signal of the joints, by its kind.
 
     Args:
         table: The log.
         names: Its columns whose names have a meaning.
-        joints: The joints of the arm.
+        model: The arm.
 
     Raises:
-        RunnerError: if the log is of two arms, or has no positions of a joint although it has their column.
+        RunnerError: if the log is of two arms or of another number of joints, or has no positions of a joint
+            although it has their column.
     """
+    joints = model.joint_names
     empty = {one.column for one in names if np.isnan(table.columns[one.column]).all()}
     chosen: dict[str, JointColumns] = {}
     for kind in ("position", "reference", "velocity", "torque", "current"):
@@ -128,10 +130,14 @@ def joint_columns(table: NumericTable, names: Sequence[Named], joints: Sequence[
                 groups.setdefault(one.group, []).append(one)
         best = max(groups.values(), key=lambda group: _count_filled(group, empty, joints), default=[])
         if best:
-            chosen[kind] = _columns_of(table.path, best, empty, joints)
+            chosen[kind] = _columns_of(table.path, best, empty, model)
     positions = chosen.get("position")
     if "reference" in chosen and (positions is None or not positions.filled):
         positions = chosen["reference"]
+    if positions is not None and len(positions.filled) > 1 and not positions.joints:
+        raise RunnerError(
+            f"{table.path}: {_counted(positions.filled, model)}. Allowed: another robot, or `--columns MAP`."
+        )
     if positions is not None and positions.filled and positions.empty:
         raise RunnerError(
             f"{table.path}: {positions.empty_words}: no position of {few(list(positions.empty.values()))}. Allowed: "
@@ -144,18 +150,38 @@ def _count_filled(group: Sequence[Named], empty: Set[str], joints: Sequence[str]
     return min(sum(one.column not in empty for one in group), len(joints))
 
 
-def _columns_of(path: Path, group: Sequence[Named], empty: Set[str], joints: Sequence[str]) -> JointColumns:
+def _columns_of(path: Path, group: Sequence[Named], empty: Set[str], model: RobotModel) -> JointColumns:
     """Return the columns of a group; columns without numbers have a joint, too, so that the others keep theirs."""
     filled = [one for one in group if one.column not in empty]
     try:
-        of = _joints_of(path, [one.label for one in group], joints)
+        of = _joints_of(path, group, model)
     except RunnerError:  # two arms, one of them without numbers
-        of = _joints_of(path, [one.label for one in filled], joints)
-    alone = of if len(filled) == len(group) else _joints_of(path, [one.label for one in filled], joints)
+        of = _joints_of(path, filled, model)
+    alone = of if len(filled) == len(group) else _joints_of(path, filled, model)
     of = alone if len(alone) > len(of) else of
     return JointColumns(
         filled, {one.column: of[one.label] for one in group if one.column in empty and one.label in of}, of
     )
+
+
+_SIGNALS = {"position": "positions", "reference": "commanded positions", "velocity": "speeds", "torque": "torques"}
+
+
+def _counted(columns: Sequence[Named], model: RobotModel) -> str:
+    """Return words for columns of another number of joints than the arm's."""
+    names, signal = [one.column for one in columns], _SIGNALS.get(columns[0].kind, "currents")
+    robot = model.pin_model.name or "the robot"
+    return f"{signal} of {len(columns)} joints ({_span(names)}), and {robot} has {model.nq}"
+
+
+def spare_positions(columns: Mapping[str, JointColumns], model: RobotModel) -> str:
+    """Return a note on numbered positions of more joints than the arm has; empty if there are none."""
+    found = columns.get("position") or columns.get("reference")
+    if found is None or len(found.filled) <= model.nq or joints_by_name(list(found.joints), model.joint_names)[0]:
+        return ""
+    used = [one for one in found.filled if one.label in found.joints]
+    used = sorted(used, key=lambda one: model.joint_names.index(found.joints[one.label]))
+    return f"{_counted(found.filled, model)}: {_span([one.column for one in used])} are taken"
 
 
 def empty_torques(columns: Mapping[str, JointColumns]) -> str:
@@ -270,8 +296,9 @@ def _length(table: NumericTable, one: Named, model: RobotModel) -> str:
     return "m" if float(np.nanmax(np.abs(table.columns[one.column]))) < 4.0 * model.reach else "mm"
 
 
-def _joints_of(path: Path, labels: Sequence[str], joints: Sequence[str]) -> dict[str, str]:
+def _joints_of(path: Path, columns: Sequence[Named], model: RobotModel) -> dict[str, str]:
     """Return the joint of each label: by its name, else by its number, else by the order in the log."""
+    labels, joints = [one.label for one in columns], model.joint_names
     by_name, twice = joints_by_name(labels, joints)
     if twice:
         raise RunnerError(f"{path}: holds two arms: {few(twice)} are the same joints. Use a log of one arm.")
@@ -280,9 +307,10 @@ def _joints_of(path: Path, labels: Sequence[str], joints: Sequence[str]) -> dict
     numbers = {label: int(found[-1]) for label in labels if (found := re.findall(r"\d+", label))}
     ordered = sorted(numbers, key=lambda label: numbers[label])
     if len(numbers) == len(labels) and len(set(numbers.values())) == len(labels) and len(labels) >= len(joints):
-        if len(labels) >= 2 * len(joints) and len(joints) > 3:
+        if len(labels) >= 2 * len(joints) and len(joints) > 2:
             raise RunnerError(
-                f"{path}: has {len(labels)} joint positions, and the robot {len(joints)}: two arms? Use a log of one."
+                f"{path}: {_counted(columns, model)}: two arms? Allowed: a log of one arm, another robot, or "
+                "`--columns MAP`."
             )
         return dict(zip(ordered, joints, strict=False))
     if len(labels) == len(joints) and not by_name:

@@ -151,3 +151,38 @@ def test_commands_of_a_joint_at_rest_or_of_coarse_steps_are_commands(tmp_path, a
         == []
     )
     assert examine_log(tmp_path / "log.csv", arm).motion.commanded
+
+
+def numbered(signals, count):
+    """Return a log of numbered joints: those of the signals, and further ones that repeat them."""
+    places = [place % 6 for place in range(count)]
+    return made.frame(
+        {**signals, **{kind: signals[kind][:, places] for kind in ("q", "tau")}}, {**made.PLAIN, "q": "pos{}"}
+    )
+
+
+@pytest.mark.parametrize(
+    ("robot", "count", "wanted"),
+    [
+        ("panda", 6, "positions of 6 joints (pos0 to pos5), and panda has 7. Allowed: another robot, or"),
+        ("panda", 2, "positions of 2 joints (pos0 and pos1), and panda has 7. Allowed: another robot, or"),
+        ("macro", 6, "positions of 6 joints (pos0 to pos5), and macro has 3: two arms? Allowed: a log of one"),
+        (
+            "ur5e",
+            12,
+            "positions of 12 joints (pos0 to pos11), and ur5e has 6: two arms? Allowed: a log of one",
+        ),
+    ],
+)
+def test_a_log_of_another_robot_is_refused_with_both_numbers(cli, tmp_path, signals, robot, count, wanted):
+    ending = cli("compare", write(tmp_path, numbered(signals, count)), "--robot", robot)
+    assert ending.code == 2
+    assert f"log.csv: {wanted}" in ending.err
+
+
+@pytest.mark.parametrize("count", [6, 7, 8, 11])
+def test_further_numbered_joints_are_named(tmp_path, arm, signals, count):
+    found = examine_log(write(tmp_path, numbered(signals, count)), arm)
+    said = f"positions of {count} joints (pos0 to pos{count - 1}), and ur5e has 6: pos0 to pos5 are taken"
+    assert [finding.text for finding in found.findings if finding.place == "positions"] == [said] * (count > 6)
+    assert (said in found.motion.notes) == (said in found.recording.notes) == (count > 6)
