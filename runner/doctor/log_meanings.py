@@ -213,7 +213,7 @@ def without_repeats(table: NumericTable, columns: Mapping[str, JointColumns]) ->
     ]  # fmt: skip
     if not repeated:
         return columns, ""
-    said = "repeats the measured positions: it is no command"
+    said = "repeats the measured positions: it is not a command"
     if len(repeated) > 1:
         said = "repeat the measured positions: they are no commands"
     some = "; without all commands the motion follows the measured positions"

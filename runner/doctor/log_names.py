@@ -201,7 +201,7 @@ _TIMES = (
     "seconds",
 )
 _OF_TIME = ("time", "timestamp", "stamp", "zeit", "zeitstempel")  # words of a name, of a column that only grows
-_HANDS = ("finger", "gripper", "hand", "knuckle")  # words before a joint's name, of what is no arm
+_HANDS = ("finger", "gripper", "hand", "knuckle")  # words before a joint's name, of what is not an arm
 _TIPS = re.compile(r"(tip|tcp|ee|eef|tool|end_effector|laser|ee_pos|tcp_pose|position)?_?(?P<label>[xyz])")
 
 

@@ -134,7 +134,9 @@ def test_a_single_command_that_repeats_leaves_no_motion_of_commands(tmp_path, ar
     commands = signals["command"].copy()
     commands[:, 2] = signals["q"][:, 2]
     found = examine_log(write(tmp_path, made.frame({**signals, "command": commands}, made.RTDE)), arm)
-    assert found.motion.notes[-1].startswith("target_q_2 repeats the measured positions: it is no command; without all")
+    assert found.motion.notes[-1].startswith(
+        "target_q_2 repeats the measured positions: it is not a command; without all"
+    )
 
 
 @pytest.mark.parametrize("rows", [0, 1])
