@@ -10,7 +10,8 @@ torque of the model \hat\tau_j, the lack of fit is
 The three columns stand for the inertia of the rotor and friction. As these cannot be below zero, the sign of a joint
 without gravity is seen, too. The model's torque has a further factor where a current times a constant is recorded, as
 the constant may be wrong. Another meaning of a column is asked for if it lowers the sum of the logarithms of all r
-clearly: errors of masses, friction and payload do not.
+clearly: errors of masses and friction do not. A heavy payload may; it is fitted to all torques together, and a note
+names it instead of a question if it explains them about as well.
 """
 
 from collections.abc import Iterator, Sequence
@@ -29,6 +30,7 @@ from runner.recordings.other_meanings import (
     OF_NOISE,
     EvenMotion,
     OtherMeaning,
+    fit_payload,
     other_meanings,
     scaled,
 )
@@ -53,6 +55,8 @@ _AT_REST = 0.01  # of the largest speed of a joint
 _FITS = 0.5  # r below which degrees explain a signal
 _DOUBTED, _HALVED = 0.1, 0.5  # r from which on the unit of a torque is doubted, and how much less another one leaves
 _OTHER_SCALE = 3.0  # times the model's torque, from which on a unit is doubted
+_SHOWN_ARM = 0.01  # m
+_ABOUT = 0.1  # of the sum of logarithms, by which a payload may explain less than another meaning
 
 
 @dataclass(frozen=True)
@@ -86,19 +90,68 @@ def check_consistency(model: RobotModel, recording: Recording) -> LogVerdict:
     if not motion.moves.any():
         text = f"no joint moves by {MOVES:g} rad and by {OF_NOISE:g} times the noise of its encoder"
         return LogVerdict((f"the arm stands still: {text}. Use a log of a motion.",), (), {})
+    found, notes = _with_payload(model, recording, motion, _examine(model, recording, motion))
+    judge, before = found.judge, found.before
+    if found.chosen and (clipped := list(_clipped(model, recording, q, before))):
+        return LogVerdict(tuple(clipped), (), {})
+    questions += [_question(meaning, joints, before, judge.lacks(found.changed)) for meaning in found.chosen]
+    notes += [] if questions else list(_tip_offset(model, judge, motion))
+    questions += [] if questions else list(_unexplained(before))
+    questions += [] if questions else list(_too_fast(model, recording, q))
+    questions += [] if questions else list(found.scales.values())
+    if questions:
+        return LogVerdict(tuple(questions), (), {})
+    return LogVerdict((), tuple(notes), dict(_confirmed(judge, motion, before, joints)))
+
+
+@dataclass(frozen=True)
+class _Examined:
+    """What an arm says of a motion: lacks before, other meanings, the motion that they make, and doubts of units.
+
+    `left` is the sum of logarithms that the proposed changes leave.
+    """
+
+    judge: "_Judge"
+    before: dict[tuple[str, int], float]
+    chosen: list[OtherMeaning]
+    changed: EvenMotion
+    scales: dict[int, str]
+    left: float
+
+    @property
+    def doubts(self) -> int:
+        return len(self.chosen) or len(self.scales)
+
+
+def _examine(model: RobotModel, recording: Recording, motion: EvenMotion) -> _Examined:
     judge = _Judge(model, recording)
     before = judge.lacks(motion)
     chosen, changed = _best(judge, motion, before, list(other_meanings(model, recording, motion)))
-    if chosen and (clipped := list(_clipped(model, recording, q, before))):
-        return LogVerdict(tuple(clipped), (), {})
-    questions += [_question(meaning, joints, before, judge.lacks(changed)) for meaning in chosen]
-    notes = [] if questions else list(_tip_offset(model, judge, motion))
-    questions += [] if questions else list(_unexplained(before))
-    questions += [] if questions else list(_too_fast(model, recording, q))
-    questions += [] if questions else list(_scales(judge, motion, recording, joints))
-    return LogVerdict(
-        tuple(questions), tuple(notes), {} if questions else dict(_confirmed(judge, motion, before, joints))
-    )
+    left = _total(judge.lacks(changed))
+    found = dict(_scales(judge, motion, recording, model.joint_names))
+    then = _total({**before, **{("torque", joint): lack for joint, (lack, _) in found.items()}})
+    if found and then < left:
+        chosen, changed, left = [], motion, then
+    scales = {} if chosen else {joint: question for joint, (_, question) in found.items()}
+    return _Examined(judge, before, chosen, changed, scales, left)
+
+
+def _with_payload(
+    model: RobotModel, recording: Recording, motion: EvenMotion, bare: _Examined
+) -> tuple[_Examined, list[str]]:
+    """Return the same with the payload, and a note of it, if that leaves fewer doubts and explains about as much."""
+    fitted = fit_payload(model, motion, lambda arm: _Judge(arm, recording).rigid(motion)) if bare.doubts else None
+    if fitted is None:
+        return bare, []
+    mass, centre = fitted
+    loaded = _examine(model.with_payload(mass, centre), recording, motion)
+    if loaded.doubts >= bare.doubts or loaded.left > bare.left + _ABOUT:
+        return bare, []
+    place = " ".join(f"{1e3 * value:.0f}" for value in centre)
+    where = "at the tip" if np.linalg.norm(centre) < _SHOWN_ARM else f"at ({place}) mm in the frame {model.tip_name}"
+    return loaded, [
+        f"a payload of about {mass:.2g} kg {where} explains the torques; say payload: in the map, or robot.payload.mass"
+    ]
 
 
 def _empty_torques(recording: Recording) -> Iterator[str]:
@@ -325,8 +378,10 @@ def _tip_offset(model: RobotModel, judge: _Judge, motion: EvenMotion) -> Iterato
         )
 
 
-def _scales(judge: _Judge, motion: EvenMotion, recording: Recording, joints: Sequence[str]) -> Iterator[str]:
-    """Yield a question for each torque that fits the model in another unit only."""
+def _scales(
+    judge: _Judge, motion: EvenMotion, recording: Recording, joints: Sequence[str]
+) -> Iterator[tuple[int, tuple[float, str]]]:
+    """Yield the joint of each torque that fits the model in another unit only, what that leaves, and a question."""
     rigid = judge.rigid(motion)
     for joint in np.flatnonzero(~np.isnan(motion.torque[0])).tolist():
         y, model = motion.torque[:, joint], rigid[:, joint]
@@ -343,8 +398,12 @@ def _scales(judge: _Judge, motion: EvenMotion, recording: Recording, joints: Seq
         if joint in judge.currents:
             settles = f"its constant: {recording.units[name].factor / scale:.3g} would fit"
         yield (
-            f"columns.{name}: the torque of {joints[joint]} is {scale:.3g} times the model's; {lack:.0%} is "
-            f"unexplained now, {then:.0%} then. Say {settles}."
+            joint,
+            (
+                then,
+                f"columns.{name}: the torque of {joints[joint]} is {scale:.3g} times the model's; {lack:.0%} is "
+                f"unexplained now, {then:.0%} then. Say {settles}.",
+            ),
         )
 
 

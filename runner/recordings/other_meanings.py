@@ -1,4 +1,4 @@
-"""Other meanings of a log's columns: signs, units, orders and frames that its signals may fit better."""
+"""Other meanings of a log's columns, and a payload that its torques may fit better instead."""
 
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass, replace
@@ -6,6 +6,7 @@ from itertools import combinations
 
 import numpy as np
 from numpy.typing import NDArray
+from scipy.optimize import lsq_linear
 
 from runner.base.arrays import FloatArray
 from runner.recordings.columns_map import Signal
@@ -14,6 +15,10 @@ from runner.robots.model import RobotModel
 from runner.schema.units import WRITTEN
 
 _SAME_UNIT = 1e-6
+_ARM_OF_PAYLOAD = 0.3  # m, up to which the centre of a payload may be away from the tip
+_LEAST_PAYLOAD = 1e-3  # kg
+_HEAVIEST = 5.0  # times the arm
+_BEYOND = 1.2  # times the limit of a joint's torque, which no payload reaches
 _SWAPPED, _EACH = "fit if they are exchanged", "each the joint of the other"
 _TURNED = "sign: -1 for both"
 HALF_TURN = f"Say {_TURNED}."
@@ -154,3 +159,45 @@ def _exchanged(one: int, other: int, what: str) -> Change:
         return replace(motion, q=motion.q[:, order], dq=motion.dq[:, order], ddq=motion.ddq[:, order])
 
     return change
+
+
+def fit_payload(
+    model: RobotModel, motion: EvenMotion, torques_of: Callable[[RobotModel], FloatArray]
+) -> tuple[float, FloatArray] | None:
+    """Return the mass, in kg, and the centre in the frame of the tip, in m, that fit all torques best; None without.
+
+    No payload explains torques far beyond their limits, or is as heavy as five arms. Joints weigh alike.
+    Friction and the inertias of the rotors are free.
+
+    Args:
+        model: The arm.
+        motion: The motion, with torques.
+        torques_of: Torques of an arm at the motion, shape (N, nq).
+    """
+    recorded = np.flatnonzero(~np.isnan(motion.torque[0]))
+    if not len(recorded) or np.any(np.abs(motion.torque[:, recorded]) > _BEYOND * model.effort_limits[recorded]):
+        return None
+    rigid = torques_of(model)
+    size = np.maximum(np.linalg.norm(motion.torque[:, recorded], axis=0), 1e-9)
+
+    def at(place: FloatArray) -> FloatArray:
+        return np.asarray((torques_of(model.with_payload(1.0, place)) - rigid)[:, recorded] / size)
+
+    arms = _ARM_OF_PAYLOAD * np.eye(3)
+    moments = [0.5 * (at(arm) - at(-arm)) / _ARM_OF_PAYLOAD for arm in arms]
+    speeds = (motion.ddq, motion.dq, np.sign(motion.dq))
+    losses = [(values[:, recorded] / size)[:, :, None] * np.eye(len(recorded)) for values in speeds]
+    y = ((motion.torque - rigid)[:, recorded] / size).ravel()
+
+    def fit(payload: Sequence[FloatArray]) -> FloatArray:
+        X = np.column_stack([*(part.ravel() for part in payload), *(part.reshape(len(y), -1) for part in losses)])
+        least = np.zeros(X.shape[1])
+        least[1 : len(payload)] = -np.inf
+        return np.asarray(lsq_linear(X, y, (least, np.inf)).x[: len(payload)])
+
+    at_tip, heaviest = at(np.zeros(3)), _HEAVIEST * sum(inertia.mass for inertia in model.pin_model.inertias)
+    mass, *moment = fit([at_tip, *moments]).tolist()
+    if _LEAST_PAYLOAD < mass < heaviest and np.linalg.norm(moment) <= _ARM_OF_PAYLOAD * mass:
+        return mass, np.array(moment) / mass
+    mass = float(fit([at_tip])[0])
+    return (mass, np.zeros(3)) if _LEAST_PAYLOAD < mass < heaviest else None

@@ -1,5 +1,6 @@
 """Contradictions between the signals of a made-up log: each single inverted, exchanged or rescaled joint."""
 
+import re
 from dataclasses import replace
 
 import numpy as np
@@ -30,12 +31,12 @@ def motion(model, seed=0):
     return middle + swing * np.sin(np.outer(T, rates) + phases)
 
 
-def made(model, q=None, change=lambda signals: signals, kinds=("torque",), error=0.2, holds="torque"):
+def made(model, q=None, change=lambda signals: signals, kinds=("torque",), error=0.2, holds="torque", load=None):
     """Return a log of an arm whose masses differ from the model's, with friction and noise."""
     q = motion(model) if q is None else q
     rng = np.random.default_rng(1)
     dq, ddq = np.gradient(q, T, axis=0), np.gradient(np.gradient(q, T, axis=0), T, axis=0)
-    other = model.pin_model.copy()
+    other = (model if load is None else model.with_payload(*load)).pin_model.copy()
     for joint in range(1, other.njoints):
         inertia = other.inertias[joint]
         other.inertias[joint] = pin.Inertia(inertia.mass * (1.0 + error), inertia.lever, inertia.inertia)
@@ -208,3 +209,35 @@ def test_degrees_are_not_proposed_because_they_shrink_noise(arm, noise):
     assert check_consistency(arm, made(arm, slow, noisy)).questions == ()
     questions = check_consistency(arm, made(arm, change=scaled(position(arm, 2), np.rad2deg(1.0)))).questions
     assert any("unit: deg" in question for question in questions)
+
+
+@pytest.fixture(scope="module")
+def light():
+    return validate(compose(["robot=ur5e"])).arm.model
+
+
+@pytest.mark.costs(3)
+@pytest.mark.parametrize(
+    ("centre", "where"),
+    [((0.0, 0.0, 0.0), "at the tip"), ((0.0, 0.05, 0.1), r"at \(-?\d 5\d (9|10)\d\) mm in the frame")],
+)
+def test_a_heavy_payload_is_no_error_of_a_unit(light, centre, where):
+    verdict = check_consistency(light, made(light, error=0.0, load=(5.0, np.array(centre))))
+    assert verdict.questions == ()
+    (note,) = verdict.notes
+    assert re.match(f"a payload of about (4.9|5|5.1) kg {where}.* explains the torques; say payload: in the map", note)
+
+
+@pytest.mark.costs(4)
+@pytest.mark.parametrize("load", [None, (5.0, np.zeros(3))])
+@pytest.mark.parametrize(("joints", "factor"), [([3], 1e3), (range(6), 1e3), (range(6), 5.0), ([1], 0.01)])
+def test_a_unit_is_asked_for_even_with_a_payload(light, load, joints, factor):
+    torques = [Signal("torque", light.joint_names[joint]) for joint in joints]
+
+    def change(signals):
+        return {**signals, **{signal: factor * signals[signal] for signal in torques}}
+
+    verdict = check_consistency(light, made(light, error=0.0, change=change, load=load))
+    assert verdict.questions
+    assert all("Say its unit" in question for question in verdict.questions)
+    assert verdict.notes == ()
