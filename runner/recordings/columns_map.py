@@ -84,7 +84,7 @@ class MappedColumn(StrictModel):
         wrap: Range after which the column starts again, in its unit. None: a turn, where a joint jumps by one.
         coupling: Signals of other joints that are added, times a factor each: joint 3 of a FANUC is J3 + J2.
         holds: Of a torque: torque, measured with gravity; without_gravity, as a controller that compensates gravity
-            reports it; commanded, which acts from its row to the next one.
+            reports it; commanded, which acts from its row to the next one unless the map says torque: instant.
         side: Of a torque: motor, or link where the sensor is behind the gears, and so feels neither the inertia of the
             rotor nor the friction of the gears.
     """
@@ -179,8 +179,8 @@ class ColumnsMap(StrictModel):
         rate: Rows in a second, in Hz; if there is a column of time, both must agree.
         columns: What each column holds, by its name; columns that are not named are not read.
         torque: held if a torque acts from its row to the next one, as a controller commands it: it is centred, half a
-            row later; instant if it was measured at the time of its row; None for instant of sensors on the link side,
-            else held.
+            row later; instant if it was measured at the time of its row; None for instant of sensors on the link side
+            that measure, else held.
         topic: Of a ROS bag: the topic of its joint states; None if it has only one.
         episode: Of a LeRobot data set: the episode; None for its longest.
         warmth: Temperature of the arm in this log, cold or warm; None if it is not known.
@@ -233,8 +233,8 @@ class ColumnsMap(StrictModel):
     @property
     def held(self) -> bool:
         """Whether a torque acts from its row to the next one."""
-        usual = "instant" if self.side == "link" else "held"
-        return self.holds == "commanded" or (self.torque or usual) == "held"
+        usual = "instant" if self.side == "link" and self.holds != "commanded" else "held"
+        return (self.torque or usual) == "held"
 
     def loaded(self, model: RobotModel) -> RobotModel:
         """Return an arm with the payload of this log."""
