@@ -241,5 +241,5 @@ def _half_widths(own: FloatArray, taken: FloatArray, rest: FloatArray, blocks: N
     if len(scores) < 2:
         return None
     bread = np.linalg.pinv(own.T @ own)
-    half: FloatArray = stdtrit(len(scores) - 1, 0.975) * np.sqrt(np.diagonal(bread @ scores.T @ scores @ bread))
+    half: FloatArray = stdtrit(len(scores) - 1, 0.975) * np.linalg.norm(scores @ bread, axis=0)
     return half

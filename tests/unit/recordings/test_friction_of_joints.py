@@ -1,14 +1,17 @@
 """Friction identified from torques that closed forms and other masses give."""
 
 import re
+import warnings
 
 import numpy as np
 import pinocchio as pin
 import pytest
 from scipy.signal import lfilter
+from scipy.special import stdtrit
 
+from runner.recordings.block_intervals import block_scores
 from runner.recordings.equations import motion_of
-from runner.recordings.friction import identify_friction
+from runner.recordings.friction import _half_widths, identify_friction
 from runner.robots.description import find_urdf, read_urdf
 from runner.robots.model import RobotModel
 
@@ -304,3 +307,16 @@ def test_friction_as_a_frame(model):
     assert frame.index.tolist() == ["q1", "q2", "q3"]
     assert frame["coulomb"].tolist() == [joint.coulomb for joint in found.joints]
     assert frame.columns.tolist() == ["unit", "viscous", "viscous_half", "coulomb", "coulomb_half", "constant"]
+
+
+def test_widths_of_intervals_are_those_of_the_covariance_and_are_real_without_residuals():
+    drawn = np.random.default_rng(5)
+    own, blocks = drawn.normal(size=(60, 3)), np.arange(60) // 6
+    taken, rest = np.linalg.qr(own)[0], drawn.normal(size=60)
+    bread, scores = np.linalg.pinv(own.T @ own), block_scores(own, taken, rest, blocks)
+    wanted = stdtrit(9, 0.975) * np.sqrt(np.diagonal(bread @ scores.T @ scores @ bread))
+    assert _half_widths(own, taken, rest, blocks) == pytest.approx(wanted, rel=1e-9)
+    nearly = np.column_stack([own, own[:, 0] + 1e-7 * drawn.normal(size=60)])  # rounding made a variance negative
+    with warnings.catch_warnings():
+        warnings.simplefilter("error")
+        assert np.isfinite(_half_widths(nearly, np.linalg.qr(nearly)[0], rest, blocks)).all()
