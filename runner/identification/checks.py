@@ -17,6 +17,7 @@ _DOUBT = 0.02  # probability that a check of a right kind of friction finds anyt
 _PAYLOAD_DOUBT = 1e-4  # probability for a change of payload, of which many times are tried
 _TRIED = 40  # times of a change of payload
 _LEAST_PAYLOAD = 0.05  # kg
+_AS_WELL = 0.95  # of the squares that a change at a time explains: a whole log explains them, too
 _FEWEST = 4  # blocks in which a column must act
 
 
@@ -52,6 +53,19 @@ class MassChange:
     mass: float
 
 
+@dataclass(frozen=True)
+class OtherMass:
+    """Another mass at the tip in a whole log than in the other logs.
+
+    Attributes:
+        log: Name of the log.
+        mass: By how much, in kg.
+    """
+
+    log: str
+    mass: float
+
+
 class _Score:
     """Tests of further columns against the residuals of a fit."""
 
@@ -63,14 +77,17 @@ class _Score:
         self._weights, self._rest = weights, fit.rest[self._used] * weights
         self._blocks = np.unique(block_numbers(fit.system, fit.block)[self._used], return_inverse=True)[1]
 
-    def test(self, column: FloatArray) -> tuple[float, float, float]:
-        """Return the coefficient of a column, its t and its degrees of freedom; zeros if it tells nothing new."""
+    def test(self, column: FloatArray) -> tuple[float, float, float, float]:
+        """Return the coefficient of a column, its t, its degrees of freedom and the squares that it explains.
+
+        The coefficient, t and the squares are 0 if it tells nothing new.
+        """
         own = column[self._used] * self._weights
         size = float(np.linalg.norm(own))
         left = own - self._Q @ (self._Q.T @ own)
         left -= self._Q @ (self._Q.T @ left)
         if float(np.linalg.norm(left)) <= 1e-3 * size:
-            return 0.0, 0.0, 1.0
+            return 0.0, 0.0, 1.0, 0.0
         square = float(left @ left)
         value = float(left @ self._rest) / square
         rest = self._rest - left * value
@@ -78,9 +95,9 @@ class _Score:
         shares = np.bincount(self._blocks, left**2)
         freedom = float(shares.sum() ** 2 / np.sum(shares**2)) - 1.0
         if freedom < _FEWEST:
-            return 0.0, 0.0, 1.0
+            return 0.0, 0.0, 1.0, 0.0
         deviation = float(np.sqrt(np.sum(by_block**2) * (1.0 + 2.0 / freedom))) / square
-        return value, value / max(deviation, 1e-300), freedom
+        return value, value / max(deviation, 1e-300), freedom, value**2 * square
 
 
 def find_flags(fit: Fit, logs: Sequence[LogRows]) -> list[Flag]:
@@ -99,7 +116,7 @@ def find_flags(fit: Fit, logs: Sequence[LogRows]) -> list[Flag]:
         for name, parts in columns.items():
             whole = np.zeros(len(fit.rest))
             whole[fit.system.joint == joint] = np.concatenate(parts)
-            _, t, freedom = score.test(whole)
+            _, t, freedom, _ = score.test(whole)
             tested.append((joint, name, t, freedom))
     found = []
     for joint, name, t, freedom in tested:
@@ -114,25 +131,56 @@ def _is_exact(fit: Fit) -> bool:
     return float(np.linalg.norm(fit.rest[used])) < 1e-9 * float(np.linalg.norm(fit.system.y[used]))
 
 
+def payload_sentences(fit: Fit, logs: Sequence[LogRows]) -> Iterator[str]:
+    """Yield a sentence for each payload that seems to change within a log, or to differ between logs."""
+    for found in _find_masses(fit, logs):
+        if isinstance(found, OtherMass):
+            more = "more" if found.mass > 0.0 else "less"
+            yield f"{found.log} seems to carry {abs(found.mass):.2g} kg {more} than the other logs"
+        else:
+            yield f"{found.log}: the payload seems to change by {found.mass:+.2g} kg at {found.time:.3g} s"
+
+
 def find_payload_changes(fit: Fit, logs: Sequence[LogRows]) -> Iterator[MassChange]:
     """Yield a change of the mass at the tip within each log, if the residuals show one."""
+    return (found for found in _find_masses(fit, logs) if isinstance(found, MassChange))
+
+
+def _find_masses(fit: Fit, logs: Sequence[LogRows]) -> Iterator[MassChange | OtherMass]:
+    """Yield a change of the mass at the tip within each log, or the log that differs most, if the residuals show one.
+
+    No time is given where another mass in the whole log explains the residuals as well.
+    """
     if _is_exact(fit):
         return
     score, system = _Score(fit), fit.system
+    changes: list[tuple[float, MassChange]] = []
+    wholes: list[tuple[float, OtherMass]] = []
     for number, rows in enumerate(logs):
         payload = rows.motion.behind_filter(payload_torques(rows.motion, FixedPayload(mass=1.0)))
-        best = (0.0, 0.0, 0.0)
         inside = np.linspace(0.1, 0.9, _TRIED) * float(rows.motion.times[-1])
-        for time in inside.tolist():
+        best, whole = (0.0, 0.0, 0.0, 0.0), (0.0, 0.0)
+        for time in (-np.inf, *inside.tolist()):
             column = np.zeros(len(fit.rest))
             own = (system.log == number) & (system.time > time)
             column[own] = payload[system.row[own], system.joint[own]]
-            mass, t, freedom = score.test(column)
+            mass, t, freedom, gain = score.test(column)
             doubt = 2.0 * (1.0 - float(stdtr(freedom, abs(t)))) * _TRIED
-            if t and doubt < _PAYLOAD_DOUBT and abs(mass) > _LEAST_PAYLOAD and abs(t) > best[0]:
-                best = abs(t), time, mass
-        if best[0]:
-            yield MassChange(rows.name, best[1], best[2])
+            if not t or doubt >= _PAYLOAD_DOUBT or abs(mass) <= _LEAST_PAYLOAD:
+                continue
+            if time == -np.inf:
+                whole = gain, mass
+            elif abs(t) > best[0]:
+                best = abs(t), time, mass, gain
+        if whole[0] and whole[0] >= _AS_WELL * best[3]:
+            wholes.append((whole[0], OtherMass(rows.name, whole[1])))
+        elif best[0]:
+            changes.append((best[3], MassChange(rows.name, best[1], best[2])))
+    largest = max((gain for gain, _ in wholes), default=0.0)
+    if largest and largest > max((gain for gain, _ in changes), default=0.0):
+        # Of two logs either may be said to differ: the one with more.
+        yield max((each for gain, each in wholes if gain > _AS_WELL * largest), key=lambda each: each.mass)
+    yield from (change for _, change in changes)
 
 
 @dataclass(frozen=True)

@@ -1,11 +1,13 @@
 """Parameters fitted to torques that are known exactly: masses, rotors, friction, delay, contacts and several logs."""
 
+import re
+
 import numpy as np
 import pinocchio as pin
 import pytest
 from support.identified_logs import KnownArm
 
-from runner.identification.checks import find_flags, find_payload_changes, second_method
+from runner.identification.checks import find_flags, find_payload_changes, payload_sentences, second_method
 from runner.identification.fit import fit_logs, residual_sizes, row_weights
 from runner.identification.friction_kinds import TERMS
 from runner.identification.held_out import file_share, predict_held_out
@@ -160,3 +162,28 @@ def test_a_change_of_the_payload_is_found_with_its_time_and_mass(arm):
     assert change.mass == pytest.approx(2.0, rel=0.3)
     same = [rows_of(arm, (t, q, dq, ddq, tau))]
     assert not list(find_payload_changes(fit_logs(same, "coulomb"), same))
+
+
+@pytest.mark.costs(3)
+def test_a_payload_that_only_another_log_has_gets_no_time(arm):
+    def logs(*masses):
+        found = []
+        for number, mass in enumerate(masses):
+            t, q, dq, ddq, tau = noisy(arm.log(20.0, first=20.0 * number), number, 0.05)
+            models = [model.pin_model for model in (arm.model.with_payload(mass), arm.model)]
+            loaded, bare = (
+                np.array([pin.rnea(model, model.createData(), *row) for row in zip(q, dq, ddq, strict=True)])
+                for model in models
+            )
+            found.append(rows_of(arm, (t, q, dq, ddq, tau + loaded - bare), name=f"log{number}.csv"))
+        return found
+
+    def said(rows):
+        fit = fit_logs(rows, "coulomb")
+        return [*payload_sentences(fit, rows)], [*find_payload_changes(fit, rows)]
+
+    for masses, more in (((0.0, 2.0), "log1.csv"), ((2.0, 0.0), "log0.csv"), ((0.0, 2.0, 0.0), "log1.csv")):
+        (sentence,), changes = said(logs(*masses))
+        assert re.fullmatch(rf"{more} seems to carry (1\.\d|2|2\.\d) kg more than the other logs", sentence)
+        assert changes == []
+    assert said(logs(0.0, 0.0)) == ([], [])
