@@ -19,6 +19,7 @@ _MOST_ROWS = 2_000
 _EDGE = 0.05  # of the rows at each end, where the low-pass knows only one side
 _POSES = 20  # at which the mass matrix is taken
 _HIDES = 0.5  # of a torque's differences, from which on noise hides them
+_TINY = 0.01  # of the torques' rms: the differences of which no cause is named
 _EXPLAINS = 0.1  # of the squares of the torques' differences, from which on a cause is named
 
 
@@ -35,7 +36,8 @@ def verdict_lines(found: RecordingComparison) -> Iterator[str]:
     count = len(cut_at_rests(found))
     many = f", on {count} motions," if count > 1 else ""
     yield f"Over {quantity(last - first, 's')}{many} the model predicts {' and '.join(said)}."
-    shares = explained(found)
+    sizes = torque_shares(found.residuals)
+    shares = {} if sizes is None or sizes[0] < _TINY else explained(found)
     causes = [f"{cause} {per_cent(share)}" for cause, share in shares.items() if share >= _EXPLAINS]
     if causes:
         yield f"Share of the torques' squared differences that a single cause explains: {', '.join(causes)}."
@@ -118,8 +120,8 @@ def explained(found: RecordingComparison) -> Mapping[str, float]:
 
     Differences are those of the recorded torques from the model's at the recorded motion, behind a low-pass, each joint
     divided by the rms of its torque, without joints whose differences noise of the positions hides. The causes are
-    viscous and Coulomb friction, another inertia of the rotor and a constant, of each joint, and a mass at the tip.
-    Friction and the rotors' inertias are not below zero.
+    viscous and Coulomb friction, another inertia of the rotor, an offset and a factor of the model's torque, of each
+    joint, a mass at the tip, and another vector of gravity. Friction and the rotors' inertias are not below zero.
     """
     by_signal, model = {one.signal: one for one in found.residuals}, found.model
     joints = model.joint_names
@@ -142,6 +144,10 @@ def explained(found: RecordingComparison) -> Mapping[str, float]:
         pin_model, data = arm.pin_model, arm.pin_model.createData()
         return np.array([pin.rnea(pin_model, data, q[row], dq[row], ddq[row]) for row in rows])
 
+    def gravity_along(axis: FloatArray) -> FloatArray:
+        arm = rigid.with_change(lambda pin_model: setattr(pin_model, "gravity", pin.Motion(axis, np.zeros(3))))
+        return np.array([arm.gravity_torque(q[row]) for row in rows])
+
     of_model = torques(rigid)
     payload = torques(rigid.with_payload(1.0)) - of_model
     scale = np.sqrt(np.mean(tau[rows] ** 2, axis=0)) + 1e-9
@@ -150,10 +156,14 @@ def explained(found: RecordingComparison) -> Mapping[str, float]:
         "friction": ([dq[rows][:, :, None] * each, signs[rows][:, :, None] * each], np.zeros(2 * len(joints))),
         "rotor inertia": ([ddq[rows][:, :, None] * each], -rigid.armature),
         "a payload": ([payload[:, :, None]], any_sign[:1]),
-        "a constant": ([np.broadcast_to(each, (len(rows), *each.shape))], any_sign),
+        "an offset": ([np.broadcast_to(each, (len(rows), *each.shape))], any_sign),
+        "a scale of each torque": ([of_model[:, :, None] * each], any_sign),
     }
     if found.recording.side == "link":
         del columns["rotor inertia"]
+    if found.recording.holds != "without_gravity":
+        along = [gravity_along(axis)[:, :, None] for axis in np.eye(3)]
+        columns["gravity in another direction"] = (along, np.full(3, -np.inf))
     noise = noise_torques(found)
     off = tau[rows] - of_model
     seen = np.array([noise[joint] for joint in joints]) < _HIDES * np.sqrt(np.mean(off**2, axis=0))

@@ -157,7 +157,17 @@ def test_friction_below_zero_is_named(stored, compared):
     assert line.startswith("Below zero, with the whole interval: q1 viscous. No friction is")
 
 
-@pytest.mark.parametrize("cause", ["friction", "rotor inertia", "a payload", "a constant"])
+CAUSES = (
+    "friction",
+    "rotor inertia",
+    "a payload",
+    "an offset",
+    "a scale of each torque",
+    "gravity in another direction",
+)
+
+
+@pytest.mark.parametrize("cause", CAUSES)
 def test_the_cause_of_the_torques_differences_is_named(stored, compared, cause):
     """The recorded torques are the run's with one cause, which explains nearly all of the differences."""
     model = setting_of(stored).config.arm.model
@@ -170,10 +180,14 @@ def test_the_cause_of_the_torques_differences_is_named(stored, compared, cause):
             data = arm.pin_model.createData()
             return np.array([pin.rnea(arm.pin_model, data, *row) for row in zip(q, dq, ddq, strict=True)])
 
+        gravity = pin.Motion(np.array([1.7, 0.5, -9.6]), np.zeros(3))
+        tilted = model.with_change(lambda pin_model: setattr(pin_model, "gravity", gravity))
         more = {
             "friction": lambda: 0.8 * dq + 0.5 * np.sign(dq),
             "rotor inertia": lambda: ddq * [0.4, 0.2, 0.3],
-            "a constant": lambda: np.full(q.shape, 1.0),
+            "an offset": lambda: np.full(q.shape, 1.0),
+            "a scale of each torque": lambda: dynamics(model) * [0.2, 0.3, -0.1],
+            "gravity in another direction": lambda: dynamics(tilted) - dynamics(model),
             "a payload": lambda: dynamics(model.with_payload(1.5)) - dynamics(model),
         }[cause]()
         return frame.assign(**{f"c{j}": frame[f"c{j}"] + more[:, j - 1] for j in (1, 2, 3)})
@@ -200,6 +214,14 @@ def test_the_accuracy_is_that_of_the_differences(stored, compared):
     of_tip = list(verdict_lines(compared(TIP)))
     assert "the tip's coordinates within" in of_tip[0]
     assert "masses, as it holds no torques" in of_tip[-1]
+
+
+def test_tiny_differences_of_torques_get_no_cause(compared):
+    for more, named in ((1.002, False), (1.2, True)):
+        found = compared(f"{JOINTS}, {TORQUES}", change=lambda frame, more=more: frame.assign(c2=more * frame["c2"]))
+        text = " ".join(verdict_lines(found))
+        assert ("a scale of each torque" in text) is named
+        assert ("explain" in text) is named
 
 
 def test_a_part_of_a_run(compared):
