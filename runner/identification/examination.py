@@ -9,7 +9,7 @@ import numpy as np
 from runner.base import progress
 from runner.base.errors import RunnerError
 from runner.base.quantities import quantity
-from runner.identification.checks import find_payload_changes
+from runner.identification.checks import payload_sentences
 from runner.identification.fit import Fit, fit_logs, name_of
 from runner.identification.friction_kinds import TERMS
 from runner.identification.log_rows import LogRows, read_rows
@@ -154,10 +154,7 @@ def examine_logs(question: ArmLogs) -> IdentificationExamination:
         )
     fit = fit_logs(rows, "coulomb", currents=question.currents)
     check_intervals(question, fit)
-    payloads = [
-        f"{change.log}: the payload seems to change by {change.mass:+.2g} kg at {change.time:.3g} s"
-        for change in find_payload_changes(fit, rows)
-    ]
+    payloads = list(payload_sentences(fit, rows))
     notes = [[*own, *_unusual(question.model, each)] for own, each in zip(question.notes, rows, strict=True)]
     return IdentificationExamination(question, sums, rows, fit, list(find_untold(question, sums, fit)), payloads, notes)
 
