@@ -143,7 +143,7 @@ def of_run(run: Run, metrics: Sequence[str] | None = None) -> PaperTable:
 
 def _of_numbers(samples: Sequence[Sequence[Sample]], seeds: Sequence[int]) -> list[str]:
     cells = [sample for row in samples for sample in row]
-    counts = {cell.n for cell in cells}
+    counts = {cell.n for cell in cells if cell.n} or {0}  # a metric that the runs do not define has no n
     notes = []
     if any(cell.median.low is not None for cell in cells):
         notes.append(
