@@ -133,7 +133,7 @@ def _is_exact(fit: Fit) -> bool:
 
 def payload_sentences(fit: Fit, logs: Sequence[LogRows]) -> Iterator[str]:
     """Yield a sentence for each payload that seems to change within a log, or to differ between logs."""
-    for found in _find_masses(fit, logs):
+    for found in find_masses(fit, logs):
         if isinstance(found, OtherMass):
             more = "more" if found.mass > 0.0 else "less"
             yield f"{found.log} seems to carry {abs(found.mass):.2g} kg {more} than the other logs"
@@ -141,12 +141,7 @@ def payload_sentences(fit: Fit, logs: Sequence[LogRows]) -> Iterator[str]:
             yield f"{found.log}: the payload seems to change by {found.mass:+.2g} kg at {found.time:.3g} s"
 
 
-def find_payload_changes(fit: Fit, logs: Sequence[LogRows]) -> Iterator[MassChange]:
-    """Yield a change of the mass at the tip within each log, if the residuals show one."""
-    return (found for found in _find_masses(fit, logs) if isinstance(found, MassChange))
-
-
-def _find_masses(fit: Fit, logs: Sequence[LogRows]) -> Iterator[MassChange | OtherMass]:
+def find_masses(fit: Fit, logs: Sequence[LogRows]) -> Iterator[MassChange | OtherMass]:
     """Yield a change of the mass at the tip within each log, or the log that differs most, if the residuals show one.
 
     No time is given where another mass in the whole log explains the residuals as well.
