@@ -13,7 +13,7 @@ from runner.config.compose.compose import compose
 from runner.doctor.log import examine_log, map_of
 from runner.doctor.log_files import MAP, MOTION, map_text
 from runner.recordings.columns_map import ColumnsMap, read_map
-from runner.recordings.recording import LONGEST_FILLED, Recording, to_recording
+from runner.recordings.recording import Recording, check_gaps, to_recording
 from runner.store import Run
 from runner.sweeps import job
 from runner.sweeps.arm import arm_of
@@ -65,8 +65,7 @@ def replay(
         RunnerError: if the log cannot be read, has longer gaps, a jump or open questions; names them.
         ConfigError: if the robot or controller does not exist, or the run cannot be made.
     """
-    if not 0.0 <= fill_gaps <= LONGEST_FILLED:
-        raise RunnerError(f"gaps of up to {LONGEST_FILLED:g} s can be filled; found {fill_gaps:g} s")
+    check_gaps(fill_gaps)
     model = arm_of(robot, config_dirs).model
     found = examine_log(log, model, given=columns)
     recording = found.recording
@@ -80,7 +79,7 @@ def replay(
         of_rows = bool(found.questions) and all(one.place == "log" for one in found.questions)
         raise RunnerError(f"{log}: {asked}{'.' if of_rows else hint}")
     said = None if columns is None else read_map(columns, model.joint_names, model.joint_units)[0]
-    if recording is not None and recording.filled:  # by the doctor, up to LONGEST_FILLED without asking
+    if recording is not None and recording.filled:  # by the doctor, without asking
         own = ColumnsMap.model_validate(map_of(found, None, None)) if said is None else said
         to_recording(found.table, own, recording.units, fill_gaps)
     if not (found.motion.commanded or (recording is not None and recording.of_kind("torque"))):

@@ -29,11 +29,9 @@ from runner.recordings.columns_map import ColumnsMap, MappedColumn, factors_of, 
 from runner.recordings.consistency import check_consistency
 from runner.recordings.files import read_log
 from runner.recordings.other_meanings import HALF_TURN, WITHOUT_GRAVITY
-from runner.recordings.recording import Recording, to_recording
+from runner.recordings.recording import LONGEST_FILLED, Recording, to_recording
 from runner.robots.model import RobotModel
 
-LONGEST_GAP = 0.1
-"""Longest gap of a log that is filled, in s."""
 _SHORTEST = 2.0  # s
 _MOST_NAMED = 3  # further columns of a question that the column map repeats
 
@@ -167,7 +165,7 @@ def judge(found: LogExamination, model: RobotModel, said: ColumnsMap, propose: b
     Raises:
         RunnerError: if the signals cannot be read, or last less than 2 s.
     """
-    recording = to_recording(found.table, said, factors_of(said, model.joint_names, model.joint_units), LONGEST_GAP)
+    recording = to_recording(found.table, said, factors_of(said, model.joint_names, model.joint_units), LONGEST_FILLED)
     if recording.duration < _SHORTEST:
         raise RunnerError(
             f"{recording.path}: the log lasts {recording.duration:.3g} s. Allowed: {_SHORTEST:g} s or more of motion."

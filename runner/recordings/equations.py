@@ -17,7 +17,7 @@ from runner.base.arrays import FloatArray
 from runner.base.quantities import quantity
 from runner.recordings.columns_map import Signal
 from runner.recordings.recording import Recording
-from runner.recordings.smoothing import derivative, low_pass
+from runner.recordings.smoothing import acceleration_noise, derivative, low_pass
 from runner.robots.model import RobotModel
 
 STANDSTILL = 0.05
@@ -144,9 +144,8 @@ def motion_of(
         signs = np.clip(speed / np.maximum(0.5 * period * np.abs(derivative(speed, period)), 1e-12), -1.0, 1.0)
     else:
         signs = np.sign(speeds)
-    # White noise above the low-pass has, behind two derivatives, a variance of 2 T sigma^2 (2 pi)^4 f^5 / 5 up to f.
     above = 1.4826 * np.median(np.abs(q - smooth), axis=0) / np.sqrt(1.0 - 2.0 * first * period)
-    noise = above * (2.0 * np.pi) ** 2 * np.sqrt(0.4 * period * frequency**5)
+    noise = acceleration_noise(above, period, frequency)
     fastest = fastest_speed(speed, period, frequency)
     unusable = tuple(_unusable(*each) for each in zip(measured.T, np.abs(speed).T, fastest.tolist(), strict=True))
     q, torques, signs = smooth[::every], *(low_pass(signals, period, first)[::every] for signals in (torques, signs))

@@ -97,10 +97,19 @@ def read_recording(path: Path, said: ColumnsMap, factors: Mapping[str, Factor], 
         RunnerError: if it cannot be read, lacks a column, has a cell without a number or with one beyond reason, gaps
             in time or another rate than is said; names the line.
     """
-    if not 0.0 <= fill_gaps <= LONGEST_FILLED:
-        raise RunnerError(f"gaps of up to {LONGEST_FILLED:g} s can be filled; found {fill_gaps:g} s")
+    check_gaps(fill_gaps)
     wanted = [*([said.time.column] if said.time is not None else []), *said.columns]
     return to_recording(read_log(path, wanted, said.topic, said.episode), said, factors, fill_gaps)
+
+
+def check_gaps(fill_gaps: float) -> None:
+    """Check the longest gap that may be filled, in s.
+
+    Raises:
+        RunnerError: if an arm may have moved there and back in it.
+    """
+    if not 0.0 <= fill_gaps <= LONGEST_FILLED:
+        raise RunnerError(f"gaps of up to {LONGEST_FILLED:g} s can be filled; found {fill_gaps:g} s")
 
 
 def to_recording(

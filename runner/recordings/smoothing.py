@@ -56,6 +56,20 @@ def _one_way(signals: FloatArray, edge: float) -> FloatArray:
     return np.asarray(passed + first, dtype=np.float64)
 
 
+def acceleration_noise(deviations: FloatArray, period: float, frequency: float) -> FloatArray:
+    r"""Return the standard deviation of second derivatives of white noise behind a low-pass, shape (n,).
+
+    .. math:: s = \sigma \, (2 \pi)^2 \sqrt{2 T f^5 / 5}
+
+    Args:
+        deviations: That of the noise, sigma, shape (n,).
+        period: Time between two samples, T, in s.
+        frequency: Cut-off, f, in Hz.
+    """
+    found: FloatArray = deviations * (2.0 * np.pi) ** 2 * np.sqrt(0.4 * period * frequency**5)
+    return found
+
+
 def derivative(signals: FloatArray, period: float) -> FloatArray:
     """Return the time derivative of even samples, that of the cubic spline through them, shape (N, ...)."""
     t = period * np.arange(len(signals))

@@ -12,7 +12,7 @@ from runner.recordings.columns_map import Signal
 from runner.recordings.compare import RecordingComparison, Residual
 from runner.recordings.consistency import measured_arm
 from runner.recordings.motions import cut_at_rests
-from runner.recordings.smoothing import cutoff, derivative, low_pass
+from runner.recordings.smoothing import acceleration_noise, cutoff, derivative, low_pass
 from runner.robots.model import RobotModel
 
 _MOST_ROWS = 2_000
@@ -87,10 +87,9 @@ def _torques(residuals: Sequence[Residual], hidden: Sequence[str]) -> str:
 def noise_torques(found: RecordingComparison) -> Mapping[str, float]:
     r"""Return the rms of the torques that noise of the measured positions makes, by joint, in N m or N.
 
-    They enter where a model follows measured positions. Accelerations have what a low-pass with cut-off f leaves of the
-    noise. With white noise of standard deviation \sigma and a time T between rows, accelerations and torques have
+    They enter where a model follows measured positions. Of accelerations with the noise s_k behind the low-pass it is
 
-    .. math:: s_k^2 = 2 \sigma_k^2 T \, (2 \pi)^4 f^5 / 5, \qquad s_{\tau_j}^2 = \sum_k M_{jk}^2 s_k^2
+    .. math:: s_{\tau_j}^2 = \sum_k M_{jk}^2 s_k^2
     """
     joints = found.model.joint_names
     q, period = found.recording.positions(joints), found.recording.period
@@ -98,7 +97,7 @@ def noise_torques(found: RecordingComparison) -> Mapping[str, float]:
         return {}
     frequency = cutoff(period)
     squares = np.mean((q - low_pass(q, period, frequency)) ** 2, axis=0) / (1.0 - 2.0 * frequency * period)
-    accelerations = squares * 2.0 * period * (2.0 * np.pi) ** 4 * frequency**5 / 5.0
+    accelerations = acceleration_noise(np.sqrt(squares), period, frequency) ** 2
     couplings = np.mean([found.model.mass_matrix(row) ** 2 for row in q[:: len(q) // _POSES + 1]], axis=0)
     return dict(zip(joints, np.sqrt(couplings @ accelerations).tolist(), strict=True))
 

@@ -161,3 +161,9 @@ def write_lerobot(path: Path, states, names, rate=30.0, episodes=2):
     }).filter(pa.array(keep))  # fmt: skip
     pyarrow.parquet.write_table(table, path / "data" / "chunk-000" / "file-000.parquet")
     return path
+
+
+def write(folder, table):
+    """Write a table as a log, and return its path."""
+    table.to_csv(folder / "log.csv", index=False)
+    return folder / "log.csv"

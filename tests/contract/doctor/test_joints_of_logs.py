@@ -18,16 +18,6 @@ ROS = {"t": "t", "q": "{}.position", "tau": "{}.effort"}
 
 
 @pytest.fixture(scope="module")
-def arm():
-    return validate(compose(["robot=ur5e"])).arm.model
-
-
-@pytest.fixture(scope="module")
-def signals(arm):
-    return made.arm_signals(arm)
-
-
-@pytest.fixture(scope="module")
 def panda():
     return validate(compose(["robot=panda"])).arm.model
 
@@ -35,11 +25,6 @@ def panda():
 @pytest.fixture(scope="module")
 def of_panda(panda):
     return made.arm_signals(panda)
-
-
-def write(tmp_path, table):
-    table.to_csv(tmp_path / "log.csv", index=False)
-    return tmp_path / "log.csv"
 
 
 def with_hand(signals, prefix, hand):
@@ -57,7 +42,7 @@ def test_the_joints_of_a_hand_are_no_second_arm(tmp_path, panda, of_panda, prefi
     table = with_hand(of_panda, prefix, hand)
     fingers_first = table[[table.columns[0], *reversed(table.columns[1:])]]
     for each in (table, fingers_first):
-        found = examine_log(write(tmp_path, each), panda)
+        found = examine_log(made.write(tmp_path, each), panda)
         assert found.recording.positions(panda.joint_names) == pytest.approx(of_panda["q"])
         assert not any(hand in one.column for one in found.meanings)
         assert len(found.recording.of_kind("torque")) == 7
@@ -65,7 +50,7 @@ def test_the_joints_of_a_hand_are_no_second_arm(tmp_path, panda, of_panda, prefi
 
 def test_a_torque_that_is_missing_does_not_make_the_hand_an_arm(tmp_path, panda, of_panda):
     table = with_hand(of_panda, "panda_joint", "panda_finger_joint").drop(columns="panda_joint7.effort")
-    assert len(examine_log(write(tmp_path, table), panda).recording.of_kind("torque")) == 6
+    assert len(examine_log(made.write(tmp_path, table), panda).recording.of_kind("torque")) == 6
 
 
 def of_arms(*prefixes, joints=SIX):
@@ -98,7 +83,7 @@ def test_two_whole_arms_are_refused(tmp_path, panda, of_panda):
     table = with_hand(of_panda, "left_joint", "left_finger_joint")
     both = table.assign(**{c.replace("left", "right"): table[c] for c in table.columns if c.startswith("left")})
     with pytest.raises(RunnerError, match="holds two arms: left_joint1, left_joint2, "):
-        examine_log(write(tmp_path, both), panda)
+        examine_log(made.write(tmp_path, both), panda)
 
 
 @pytest.mark.parametrize("name", ["{}.effort", "/joint_states/{}/effort"])
@@ -111,18 +96,18 @@ def test_a_force_of_a_prismatic_joint_is_in_newtons(tmp_path, name):
     for place, joint in enumerate(gantry.joint_names):
         table[position.format(joint)] = 0.2 * np.sin((1.0 + place) * t)
         table[name.format(joint)] = 20.0 * np.cos(t)
-    found = examine_log(write(tmp_path, table), gantry)
+    found = examine_log(made.write(tmp_path, table), gantry)
     assert {one.keys["unit"] for one in found.meanings if "torque" in one.keys} == {"N"}
     assert not any("is not known" in finding.text for finding in found.findings)
     said = table.rename(columns={name.format(joint): f"{joint}_effort [Nm]" for joint in gantry.joint_names})
     said = said.rename(columns={position.format(joint): joint for joint in gantry.joint_names})
-    assert "its unit 'N m' is not known" in str(examine_log(write(tmp_path, said), gantry).questions)
+    assert "its unit 'N m' is not known" in str(examine_log(made.write(tmp_path, said), gantry).questions)
 
 
 @pytest.mark.parametrize("unit", [1.0, 1.0 + 1e-12])
 def test_commands_that_repeat_the_measured_positions_are_none(tmp_path, arm, signals, unit):
     copied = made.frame({**signals, "command": unit * signals["q"]}, made.RTDE)
-    found = examine_log(write(tmp_path, copied), arm)
+    found = examine_log(made.write(tmp_path, copied), arm)
     said = "target_q_0 to target_q_5 repeat the measured positions: they are no commands"
     assert [str(finding) for finding in found.findings if "commands" in finding.place] == [f"note    commands: {said}"]
     assert said in found.motion.notes
@@ -133,7 +118,7 @@ def test_commands_that_repeat_the_measured_positions_are_none(tmp_path, arm, sig
 def test_a_single_command_that_repeats_leaves_no_motion_of_commands(tmp_path, arm, signals):
     commands = signals["command"].copy()
     commands[:, 2] = signals["q"][:, 2]
-    found = examine_log(write(tmp_path, made.frame({**signals, "command": commands}, made.RTDE)), arm)
+    found = examine_log(made.write(tmp_path, made.frame({**signals, "command": commands}, made.RTDE)), arm)
     assert found.motion.notes[-1].startswith(
         "target_q_2 repeats the measured positions: it is not a command; without all"
     )
@@ -149,7 +134,9 @@ def test_commands_of_a_joint_at_rest_or_of_coarse_steps_are_commands(tmp_path, a
     else:
         q[:, 3] = commands[:, 3] = -1.5
     assert (
-        examine_log(write(tmp_path, made.frame({**signals, "q": q, "command": commands}, made.RTDE)), arm).questions
+        examine_log(
+            made.write(tmp_path, made.frame({**signals, "q": q, "command": commands}, made.RTDE)), arm
+        ).questions
         == []
     )
     assert examine_log(tmp_path / "log.csv", arm).motion.commanded
@@ -177,14 +164,14 @@ def numbered(signals, count):
     ],
 )
 def test_a_log_of_another_robot_is_refused_with_both_numbers(cli, tmp_path, signals, robot, count, wanted):
-    ending = cli("compare", write(tmp_path, numbered(signals, count)), "--robot", robot)
+    ending = cli("compare", made.write(tmp_path, numbered(signals, count)), "--robot", robot)
     assert ending.code == 2
     assert f"log.csv: {wanted}" in ending.err
 
 
 @pytest.mark.parametrize("count", [6, 7, 8, 11])
 def test_further_numbered_joints_are_named(tmp_path, arm, signals, count):
-    found = examine_log(write(tmp_path, numbered(signals, count)), arm)
+    found = examine_log(made.write(tmp_path, numbered(signals, count)), arm)
     said = f"positions of {count} joints (pos0 to pos{count - 1}), and ur5e has 6: pos0 to pos5 are taken"
     assert [finding.text for finding in found.findings if finding.place == "positions"] == [said] * (count > 6)
     assert (said in found.motion.notes) == (said in found.recording.notes) == (count > 6)

@@ -18,16 +18,6 @@ from runner.doctor.log_files import map_text
 from runner.recordings.files import read_log
 
 
-@pytest.fixture(scope="module")
-def arm():
-    return validate(compose(["robot=ur5e"])).arm.model
-
-
-@pytest.fixture(scope="module")
-def signals(arm):
-    return made.arm_signals(arm)
-
-
 def csv(tmp_path, table, sep=",", name="log.csv", head="", decimal="."):
     path = tmp_path / name
     path.write_text(head + table.to_csv(index=False, sep=sep, decimal=decimal, float_format="%.6f"))
