@@ -49,11 +49,12 @@ def spec_abstract(spec: "Spec") -> str:
     if spec.whole is None:
         return "The run lacks a metric of its spec."
     failing, several = spec.whole.rest, len(spec.bounds) > 1
+    within = interval_text(failing) if failing.exact else f"95 % interval {interval_text(failing)}"
     what = f"all {len(spec.bounds)} bounds" if several else "the bound"
     late = [title(one.metric) for one in spec.bounds if late_text(one.metric, one.bound, one.history)]
     return (
         f"{spec.whole.kept} of {spec.whole.of} repetitions keep {what} of the spec: the probability of failing is "
-        f"{probability(failing.share)} (95 % interval {interval_text(failing)})."
+        f"{probability(failing.share)} ({within})."
         + (f" Set after the result was known: {', '.join(late)}." if late else "")
     )
 
@@ -108,8 +109,8 @@ def share_texts(share: "Share | None") -> tuple[str, str, str]:
 
 
 def interval_text(share: "Share") -> str:
-    """Return the ends of the interval of a probability."""
-    return f"{probability(share.low)} to {probability(share.high)}"
+    """Return the ends of the interval of a probability; a word if nothing is drawn."""
+    return "exact: nothing is drawn" if share.exact else f"{probability(share.low)} to {probability(share.high)}"
 
 
 def probability(value: float) -> str:

@@ -40,10 +40,15 @@ class Share:
     @property
     def rest(self) -> "Share":
         """The number of the other repetitions."""
-        return count_share(self.of - self.kept, self.of)
+        return count_share(self.of - self.kept, self.of, self.exact)
+
+    @property
+    def exact(self) -> bool:
+        """True if nothing is drawn: the interval is the proportion itself."""
+        return self.low == self.high
 
 
-def count_share(kept: int, of: int) -> Share:
+def count_share(kept: int, of: int, exact: bool = False) -> Share:
     """Return a share with the exact 95 % interval of the probability.
 
     Clopper and Pearson, "The Use of Confidence or Fiducial Limits Illustrated in the Case of the Binomial",
@@ -54,22 +59,24 @@ def count_share(kept: int, of: int) -> Share:
     Args:
         kept: How many, 0 to `of`.
         of: Number of repetitions, one or more.
+        exact: True if nothing is drawn, so that further repetitions would be the same.
     """
-    low, high = share_ends(np.array([kept]), np.array([of]))
+    low, high = share_ends(np.array([kept]), np.array([of]), exact)
     return Share(kept, of, float(low[0]), float(high[0]))
 
 
-def share_ends(kept: IntArray, of: IntArray) -> tuple[FloatArray, FloatArray]:
+def share_ends(kept: IntArray, of: IntArray, exact: NDArray[np.bool_] | bool = False) -> tuple[FloatArray, FloatArray]:
     """Return the ends of the intervals of several shares, as `count_share` has them.
 
     Args:
         kept: How many, shape (n,).
         of: Number of repetitions of each, one or more, shape (n,).
+        exact: True where nothing is drawn, shape (n,), or for all.
     """
     none, every = kept == 0, kept == of
     low = np.where(none, 0.0, betaincinv(np.where(none, 1, kept), of - kept + 1, _TAIL))
     high = np.where(every, 1.0, betaincinv(kept + 1, np.where(every, 1, of - kept), 1.0 - _TAIL))
-    return low, high
+    return np.where(exact, kept / of, low), np.where(exact, kept / of, high)
 
 
 def needed_repetitions(seen: Share, probability: float) -> int | None:

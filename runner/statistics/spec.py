@@ -106,7 +106,11 @@ def bounds_of(config: Mapping[str, Any]) -> dict[str, Bound]:
 
 
 def judge(
-    bounds: Mapping[str, Bound], repetitions: int, metrics: Mapping[str, Any], values: Callable[[str], FloatArray]
+    bounds: Mapping[str, Bound],
+    repetitions: int,
+    metrics: Mapping[str, Any],
+    values: Callable[[str], FloatArray],
+    exact: bool,
 ) -> Spec:
     """Return the number of a run's repetitions that keep some bounds.
 
@@ -117,6 +121,7 @@ def judge(
         repetitions: Number of repetitions.
         metrics: Metrics of the run; empty if every repetition failed.
         values: Gives one of these in each repetition, shape (repetitions,), NaN where it has no value.
+        exact: True if nothing is drawn: all repetitions are the same.
     """
     kept: dict[str, NDArray[np.bool_] | None] = {}
     for metric, bound in bounds.items():
@@ -125,8 +130,8 @@ def judge(
         else:
             kept[metric] = None if metrics else np.zeros(repetitions, dtype=bool)
     there = [one for one in kept.values() if one is not None]
-    whole = _count(np.logical_and.reduce(there)) if len(there) == len(kept) else None
-    shares = {metric: None if one is None else _count(one) for metric, one in kept.items()}
+    whole = _count(np.logical_and.reduce(there), exact) if len(there) == len(kept) else None
+    shares = {metric: None if one is None else _count(one, exact) for metric, one in kept.items()}
     return Spec(tuple(Kept(metric, bound, shares[metric]) for metric, bound in bounds.items()), whole)
 
 
@@ -139,10 +144,10 @@ def read_spec(record: Mapping[str, Any]) -> Spec:
     return Spec(tuple(bounds), _share(record["all"]))
 
 
-def _count(kept: NDArray[np.bool_]) -> "Share":
+def _count(kept: NDArray[np.bool_], exact: bool) -> "Share":
     from runner.statistics.proportion import count_share  # SciPy, a second, which runs without bounds do without
 
-    return count_share(int(np.count_nonzero(kept)), kept.size)
+    return count_share(int(np.count_nonzero(kept)), kept.size, exact)
 
 
 def _record(share: "Share | None") -> dict[str, float | None]:

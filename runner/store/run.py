@@ -15,6 +15,7 @@ import numpy as np
 from runner.base.arrays import FloatArray
 from runner.base.errors import RunnerError, StoreError, nearest
 from runner.config.composed import Composed
+from runner.store.drawn import draws_nothing
 from runner.store.kinds import kind_of
 from runner.store.parquet import VALUES_FILE, numbers, open_parquet, read_column, read_table
 from runner.store.record import Metrics, find_config_faults, find_faults
@@ -165,7 +166,8 @@ class Run(Stored):
         """
         from runner.statistics.spec import bounds_of, judge, merge_histories, settings
 
-        spec = judge(bounds, self.record["repetitions"], self.record["metrics"], self.values)
+        exact = draws_nothing(self.config)
+        spec = judge(bounds, self.record["repetitions"], self.record["metrics"], self.values, exact)
         made_with = settings({**dict.fromkeys(later), **bounds_of(self.config)}, self.provenance["date"])
         history = merge_histories(made_with, self.record.get("spec", {}).get("history", {}), later)
         return replace(self, record={**self.record, "spec": {**spec.record(), "history": history}})

@@ -17,10 +17,10 @@ from runner.base.arrays import FloatArray
 from runner.base.errors import RunnerError
 from runner.statistics.interval import SMALLEST_SAMPLE
 from runner.store.axes import axes_of
+from runner.store.drawn import draws_nothing
 from runner.store.finished import finer_names, write_finer
 from runner.store.run import Run
 from runner.store.sweep import Sweep
-from runner.sweeps.drawn import draws_nothing
 
 if TYPE_CHECKING:
     from runner.assembly.run_config import RunConfig

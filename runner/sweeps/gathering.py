@@ -39,6 +39,8 @@ class Gathered:
         rules: Rules that were checked for caveats, each with the number of cells.
         configs: Each resolved config with its cells; the configs of a shard's cells may differ in the seed.
         rounding: Relative change of each metric through rounding, shape (cells,); 0 if it is unknown.
+        undefined: True for repetitions of runs that do not define a metric, by metric, shape (cells, repetitions);
+            known after `values`.
     """
 
     def __init__(self, cells: int) -> None:
@@ -52,6 +54,7 @@ class Gathered:
         self.rules: list[tuple[Mapping[str, Any] | None, int]] = []
         self.configs: list[tuple[Mapping[str, Any], list[Cells]]] = []
         self.rounding: dict[str, FloatArray] = {}
+        self.undefined: dict[str, NDArray[np.bool_]] = {}
         self._places: dict[object, int] = {}  # index of each config, by its JSON without the seed
         self._values: dict[str, FloatArray] = {}
         self._measured = np.zeros(cells, dtype=bool)
@@ -161,8 +164,10 @@ class Gathered:
             whole = values if not missing else np.pad(values, ((0, 0), (0, missing)), constant_values=np.nan)
             whole[lost] = np.inf
             if not name.endswith(_NEVER):
-                undefined = ~failed & np.isinf(whole).any(axis=1) & ~np.isfinite(whole).any(axis=1)
-                whole[undefined] = np.nan
+                undefined = np.isinf(whole) & ~(failed | np.isfinite(whole).any(axis=1))[:, None]
+                if undefined.any():
+                    self.undefined[name] = undefined
+                    whole[undefined] = np.nan
             self._values[name] = whole
         return self._values
 

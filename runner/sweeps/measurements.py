@@ -16,12 +16,12 @@ from runner.base.dotted_keys import get, split_override
 from runner.base.errors import RunnerError, StoreError, unknown
 from runner.base.machine import Machine
 from runner.store.axes import Axis, axes_of, find_cells, make_axis
+from runner.store.drawn import draws_nothing
 from runner.store.finished import Finished, finer_names, read_finer
 from runner.store.run import Run
 from runner.store.seal import DamagedError
 from runner.store.sweep import InShard, Sweep
 from runner.sweeps.differing import Resolved, UnsweptDifference
-from runner.sweeps.drawn import draws_nothing
 from runner.sweeps.gathering import Gathered
 from runner.sweeps.status import find_status
 
@@ -49,6 +49,7 @@ class Measurements:
         finer: Values of each metric in the first repetitions on a finer step of the plant, as `values`; NaN if
             unknown.
         rounding: Relative change of each metric through rounding, shape (cells,); 0 if it is unknown.
+        undefined: True for repetitions of runs that do not define a metric, by metric, shape (cells, repetitions).
         name: Name in a comparison, such as "A".
         folder: Folder of the sweep or run.
         command: The command that makes the sweep or run.
@@ -73,6 +74,7 @@ class Measurements:
     configs: Sequence[tuple[Mapping[str, Any], NDArray[np.intp]]] = ()
     finer: Mapping[str, FloatArray] = field(default_factory=dict)
     rounding: Mapping[str, FloatArray] = field(default_factory=dict)
+    undefined: Mapping[str, NDArray[np.bool_]] = field(default_factory=dict)
     name: str = ""
     folder: Path = Path()
     command: str = ""
@@ -345,6 +347,7 @@ def _measured(overrides: Sequence[Sequence[str]], gathered: Gathered) -> Measure
         [(config, np.concatenate(members)) for config, members in gathered.configs],
         machines=list(gathered.machines),
         rounding=gathered.rounding,
+        undefined=gathered.undefined,
     )
 
 

@@ -13,6 +13,7 @@ import yaml
 from runner.caveats.rule import Found
 from runner.simulation.results import RunResult
 from runner.statistics.spec import bounds_of, judge
+from runner.store.drawn import draws_nothing
 from runner.store.parquet import OF_NUMBERS, VALUES_FILE, encode_parquet, trace_table, values_parquet
 from runner.store.run import Run
 from runner.store.seal import JsonTexts, encode_finite, write_job
@@ -52,7 +53,8 @@ def make_record(result: RunResult) -> dict[str, Any]:
     bounds = bounds_of(result.config.resolved)
     if bounds:
         values = {metric: summary.values for metric, summary in result.metrics.items()}
-        record["spec"] = judge(bounds, result.config.settings.repetitions, values, values.__getitem__).record()
+        repetitions, exact = result.config.settings.repetitions, draws_nothing(result.config.resolved)
+        record["spec"] = judge(bounds, repetitions, values, values.__getitem__, exact).record()
     record["metrics"] = {metric: summary.record() for metric, summary in result.metrics.items()}
     if result.plant_error is not None:
         record["plant_error"] = result.plant_error.record()

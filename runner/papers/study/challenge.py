@@ -24,11 +24,11 @@ from runner.papers.study.results import Results
 from runner.reporting.document import Document
 from runner.statistics.scope import FEWEST
 from runner.store import Run
+from runner.store.drawn import draws_nothing
 from runner.sweeps.challenge.case import Case, check_sides, own_overrides
 from runner.sweeps.challenge.families import FAMILIES
 from runner.sweeps.challenge.question import Class, LeftOutVariation, Side, Variation
 from runner.sweeps.challenge.table import Values, list_variations, read_values
-from runner.sweeps.drawn import draws_nothing
 from runner.sweeps.job import check_job
 from runner.sweeps.plan import Item
 

@@ -17,9 +17,9 @@ from runner.reporting.conditions import ALIKE, keep_described
 from runner.reporting.metric_titles import first_screen, is_part
 from runner.reporting.sweep.subject import main_metrics
 from runner.statistics import SMALLEST_SAMPLE
+from runner.store.drawn import draws_model
 from runner.store.run import Run
 from runner.store.sweep import Sweep
-from runner.sweeps.drawn import draws_model
 from runner.sweeps.measurements import Measurements, check_metrics, measure_run, measure_stored, stored_part
 
 MOST_CONDITIONS = 1_000

@@ -17,6 +17,7 @@ from runner.reporting.table import Table, numbers
 from runner.schema.bound import Bound
 from runner.statistics.conclusion import ALPHA, SHARE, larger_median
 
+_EXACT = "exact, because nothing is drawn"
 PILOT = 8
 """Repetitions of a pilot."""
 
@@ -89,8 +90,8 @@ def count_failures(subject: Subject, spec: Mapping[str, Bound], probability: flo
         cells = []
         for cell in np.flatnonzero(one.of).tolist():
             seen = count_share(int(one.failed[cell]), int(one.of[cell]))
-            needed = needed_repetitions(seen, probability)
-            reason = f"{seen.kept} of {seen.of} failed; if that share stays"
+            needed = 1 if one.exact[cell] else needed_repetitions(seen, probability)
+            reason = _EXACT if one.exact[cell] else f"{seen.kept} of {seen.of} failed; if that share stays"
             place = subject.cell_name(cell) or "all"
             cells.append(Needed(one.name, place, f"{100.0 * probability:g} %", needed, None, reason))
         found += [max(cells, key=lambda each: each._rank)] if cells else []
@@ -123,7 +124,7 @@ def _of_difference(one: Answer, share: float, repetitions: int) -> Needed:
     if one.limit or one.is_lost:
         return needed(None, reason=one.word)
     if found.exact:
-        return needed(1, reason="exact, because nothing is drawn")
+        return needed(1, reason=_EXACT)
     level = ALPHA / max(one.family, 1)
     pairs, ends = found.pairs_needed(size, level, one.least), found.range_needed(size, level, one.least)
     if size <= one.least:

@@ -11,13 +11,14 @@ from runner.base.arrays import FloatArray
 from runner.reporting.charts.figure import spaced_indices
 from runner.reporting.document import Curves, Map, Maps, Notice, Panel, ReportBlock, Section, Series, Table, Text
 from runner.reporting.markup import literal
-from runner.reporting.spec_blocks import RULE, bound_text, late_text, probability
+from runner.reporting.spec_blocks import RULE, bound_text, interval_text, late_text, probability
 from runner.reporting.sweep import maps
 from runner.reporting.sweep.subject import Subject, key_label, spans_decades
 from runner.schema.bound import Bound
 from runner.statistics.spec import bounds_of, merge_histories, settings
 from runner.store import Sweep
 from runner.store.axes import Axis
+from runner.store.drawn import draws_nothing
 
 _WIDE = 10.0  # times the lower end: of a probability with a higher upper end not even the magnitude is known
 _FEW = "too few repetitions to tell"
@@ -39,11 +40,13 @@ class Failing:
         name: Description of the bound.
         failed: Their number, shape (n,).
         of: Number of repetitions, shape (n,); 0 for cells without the metric.
+        exact: True for cells in which nothing is drawn, shape (n,).
     """
 
     name: str
     failed: NDArray[np.intp]
     of: NDArray[np.intp]
+    exact: NDArray[np.bool_]
 
     @property
     def share(self) -> FloatArray:
@@ -55,7 +58,7 @@ class Failing:
         """The ends of the intervals of the probability, shape (n,) each; NaN for none."""
         from runner.statistics.proportion import share_ends
 
-        low, high = share_ends(self.failed, np.maximum(self.of, 1))
+        low, high = share_ends(self.failed, np.maximum(self.of, 1), self.exact)
         return np.where(self.of > 0, low, np.nan), np.where(self.of > 0, high, np.nan)
 
     @property
@@ -69,22 +72,29 @@ class Failing:
         failed, of = (
             np.array([int(counts[list(some)].sum()) for some in members]) for counts in (self.failed, self.of)
         )
-        return Failing(self.name, failed, of)
+        return Failing(self.name, failed, of, np.array([bool(self.exact[list(some)].all()) for some in members]))
 
 
 def find_failing(subject: Subject, spec: Mapping[str, Bound]) -> list[Failing]:
-    """Return the number of repetitions of each cell that fail each bound, or any of several bounds."""
-    values = subject.measurements.values
-    shape = (len(subject.measurements.hashes), subject.measurements.repetitions)
+    """Return the number of repetitions of each cell that fail each bound, or any of several bounds.
+
+    A repetition without a value fails, also where no run of the cell defines one.
+    """
+    measured = subject.measurements
+    values, undefined = measured.values, measured.undefined
+    exact = np.zeros(len(measured.hashes), dtype=bool)
+    for config, cells in measured.configs:
+        exact[cells] = draws_nothing(config)
+    shape = (len(measured.hashes), measured.repetitions)
     found, any_failed, all_there = [], np.zeros(shape, dtype=bool), np.ones(shape, dtype=bool)
     for metric, bound in spec.items():
-        measured = values.get(metric, np.full(shape, np.nan))
-        there = ~np.isnan(measured)
-        failed = there & ~bound.range.holds(measured)
-        found.append(Failing(bound_text(metric, bound), failed.sum(axis=1), there.sum(axis=1)))
+        known = values.get(metric, np.full(shape, np.nan))
+        there = ~np.isnan(known) | undefined.get(metric, False)
+        failed = there & ~bound.range.holds(known)
+        found.append(Failing(bound_text(metric, bound), failed.sum(axis=1), there.sum(axis=1), exact))
         any_failed, all_there = any_failed | failed, all_there & there
     if len(found) > 1:
-        found.append(Failing(_ALL, (any_failed & all_there).sum(axis=1), all_there.sum(axis=1)))
+        found.append(Failing(_ALL, (any_failed & all_there).sum(axis=1), all_there.sum(axis=1), exact))
     return found
 
 
@@ -185,13 +195,15 @@ def _row(one: Failing, x: Axis, y: Axis, cells: NDArray[np.intp], start: str) ->
 
 
 def _texts(failing: Failing) -> list[str]:
-    columns = zip(failing.failed, failing.of, failing.share, *failing.ends, failing.few, strict=True)
+    from runner.statistics.proportion import Share
+
+    columns = zip(failing.failed, failing.of, *failing.ends, failing.few, strict=True)
     return [
-        f"{failed} of {of} failed, {probability(share)} ({probability(low)} to {probability(high)})"
+        f"{failed} of {of} failed, {probability(failed / of)} ({interval_text(Share(failed, of, low, high))})"
         + ("; too few" if few else "")
         if of
         else "no such metric"
-        for failed, of, share, low, high, few in columns
+        for failed, of, low, high, few in columns
     ]
 
 

@@ -11,8 +11,8 @@ from runner.schema.bound import Bound
 from runner.statistics import compare_paired
 from runner.statistics.paired import PairedComparison
 from runner.statistics.scope import TriedVariation
+from runner.store.drawn import draws_nothing
 from runner.store.run import Run
-from runner.sweeps.drawn import draws_nothing
 
 _ERROR = "max_tracking_error"
 _SATURATION = "saturation_fraction"

@@ -31,6 +31,7 @@ from runner.statistics.scope import (
     pairs_of_looks,
 )
 from runner.statistics.turning import PAIRS, POINTS, Turn, find_turns
+from runner.store.drawn import draws_nothing
 from runner.store.kinds import note
 from runner.store.seal import DamagedError
 from runner.sweeps.at_work import at_work
@@ -44,7 +45,6 @@ from runner.sweeps.challenge.families import Family, NotApplicableError, SidesCh
 from runner.sweeps.challenge.question import LeftOutVariation, Question, Value, Variation
 from runner.sweeps.challenge.stored import AnsweredVariation, Challenge, Turning, open_challenge, place_of
 from runner.sweeps.challenge.table import list_variations
-from runner.sweeps.drawn import draws_nothing
 from runner.sweeps.job import check_job
 from runner.sweeps.run import Engine
 

@@ -124,3 +124,23 @@ def test_runs_in_shards_are_judged_as_those_in_folders(cli, cut):
     again = cli(*line, f"{BOUND}=1", "sweep.trace=never", "outputs=shards")
     assert re.search(r"set after the result was known \(\S+; before: at most .*\): 2 of 2 cells\.", again.err)
     assert shards.out.splitlines()[-1] == "broken: 1 of 2 bounds of 2 runs"
+
+
+SHORT = ("-m", "robot=macro", "plant=rk4", "duration=0.3", "hydra.sweeper.workers=0")
+
+
+def test_without_draws_one_repetition_tells_for_sure(cli):
+    swept = cli(*SHORT, "noise=none", "repetitions=3", "seed=1,2", "spec.metrics.peak_torque.max=1e5")
+    ending = cli("check", swept.folder, "--max-failure-probability", "1e-6")
+    assert ending.code == 0
+    assert ending.out.count("exact: nothing is drawn  good") == 2
+
+
+def test_a_metric_that_no_repetition_defines_breaks_its_bound_everywhere(cli):
+    bounds = ("spec.metrics.steady_state_error.max=1", "spec.metrics.peak_torque.max=1e5")
+    swept = cli(*SHORT, "noise=thesis", "repetitions=2", "seed=1,2", *bounds)
+    assert "0 of 2 cells keep the spec" in swept.err
+    assert "broken: 2 of 4 bounds" in cli("check", swept.folder).out
+    text = (cli("report", swept.folder).folder / "report.html").read_text()
+    assert "has the metric of the bound" not in text
+    assert "2 of 2 failed, 1 (0.158 to 1)" in text

@@ -83,3 +83,13 @@ def test_repetitions_needed_where_some_did(kept, n, probability):
 
 def test_no_number_tells_a_share_from_itself():
     assert needed_repetitions(count_share(1, 100), 0.01) is None
+
+
+def test_without_draws_the_interval_is_the_proportion_itself():
+    every, none = count_share(30, 30, exact=True), count_share(0, 1, exact=True)
+    assert (every.low, every.high, every.exact) == (1.0, 1.0, True)
+    assert (every.rest.low, every.rest.high, every.rest.exact) == (0.0, 0.0, True)
+    assert (none.low, none.high) == (0.0, 0.0)
+    low, high = share_ends(np.array([0, 0]), np.array([30, 30]), np.array([True, False]))
+    assert (high[0], high[1]) == (0.0, pytest.approx(1.0 - 0.025 ** (1 / 30)))
+    assert low.tolist() == [0.0, 0.0]

@@ -23,7 +23,7 @@ OTHERS = {
     "plants/agreement.py", "plugin.py", "plugins/discovery.py", "plugins/folder_code.py", "recordings", "reporting",
     "schema/bound.py", "schema/model.py", "schema/units.py", "simulation/provenance.py", "simulation/tick_time.py",
     "statistics", "store", "sweeps/arm.py", "sweeps/at_work.py", "sweeps/batch.py", "sweeps/challenge",
-    "sweeps/changes.py", "sweeps/check.py", "sweeps/deadline.py", "sweeps/differing.py", "sweeps/drawn.py",
+    "sweeps/changes.py", "sweeps/check.py", "sweeps/deadline.py", "sweeps/differing.py",
     "sweeps/engine.py", "sweeps/estimate.py", "sweeps/finer_step.py", "sweeps/forked.py", "sweeps/gathering.py",
     "sweeps/job.py", "sweeps/measurements.py", "sweeps/outcomes.py", "sweeps/part.py", "sweeps/plan.py",
     "sweeps/preview.py", "sweeps/processes.py", "sweeps/question.py", "sweeps/queue.py", "sweeps/records.py",

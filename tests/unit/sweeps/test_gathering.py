@@ -24,9 +24,9 @@ def same(one, other):
         a, b = getattr(one, key), getattr(other, key)
         if key in ("folder", "command"):
             continue  # of the sweep
-        if key == "values":
+        if key in ("values", "undefined"):
             assert list(a) == list(b)
-            assert all(np.array_equal(a[name], b[name], equal_nan=True) for name in a)
+            assert all(np.array_equal(a[name], b[name], equal_nan=key == "values") for name in a)
         elif key == "axes":
             assert [(x.name, list(x.values), x.level.tolist()) for x in a] == [
                 (x.name, list(x.values), x.level.tolist()) for x in b

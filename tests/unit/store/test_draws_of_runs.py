@@ -2,7 +2,7 @@
 
 import pytest
 
-from runner.sweeps.drawn import draws_model, draws_nothing
+from runner.store.drawn import draws_model, draws_nothing
 
 SILENT = {
     "noise": {"position": 0.0, "distribution": "uniform"},
