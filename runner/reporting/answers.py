@@ -35,7 +35,8 @@ EXPLAINED = (
     f"{PAIRS} Effect is the rank-biserial correlation: 1 with all pairs larger, -1 with all smaller. p of the "
     "signed-rank test is corrected for all comparisons of a metric. Each metric is a separate question: of equal "
     f"metrics one in twenty is shown by chance. An answer needs p below {ALPHA:g} and a difference above the plant's "
-    f"error in it and above {100 * SHARE:g} % of the larger median, or {SHARE:g} of a fraction."
+    f"error in it and above {100 * SHARE:g} % of the larger median, or {SHARE:g} of a fraction. Medians are of the "
+    "compared draws: those in which neither has a value are left out."
 )
 
 CHOSEN = (
@@ -275,7 +276,7 @@ class Answer(AskedComparison):
         if self.is_lost:
             return f"{first} and {second} have no value in any draw."
         if self.equal:
-            pairs = "" if found.exact else f" ({found.n} pairs)"
+            pairs = "" if found.exact else f" ({found.count})"
             return f"{both} are equal up to rounding{self._rounding()}{pairs}{self._empty()}."
         if not self.sign:
             if self.word == "no difference shown":
@@ -392,7 +393,7 @@ class Answer(AskedComparison):
         if self.sign < 0 and ends:
             ends = -ends[1], -ends[0]
         minus = "-" if not self.sign and found.difference < 0 else ""
-        parts = [self._range(ends), f"{found.n} pairs"]
+        parts = [self._range(ends), found.count]
         parts += [f"no value in {a} and {b} of {found.n} draws" for a, b in [found.lost] if a or b]
         parts += [str(found.empty)]
         parts += ["integration error unknown"] if self.sign and found.error is None else []

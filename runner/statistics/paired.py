@@ -132,6 +132,7 @@ class PairedComparison:
         rounding: Largest change of a value through rounding, as a fraction; 0 where it is not known.
         exact: True if nothing is drawn, so that one pair gives the difference without doubt.
         empty: Repetitions without any value, which are in no pair.
+        left_out: Number of further pairs, which were not chosen.
     """
 
     a: FloatArray = field(repr=False)
@@ -141,11 +142,18 @@ class PairedComparison:
     rounding: float = 0.0
     exact: bool = False
     empty: Empty = NONE_EMPTY
+    left_out: int = 0
 
     @property
     def n(self) -> int:
         """Number of pairs."""
         return len(self.differences)
+
+    @property
+    def count(self) -> str:
+        """The number of pairs, such as "40 pairs" or "1000 of 1500 pairs"."""
+        of = f" of {self.n + self.left_out}" if self.left_out else ""
+        return f"{self.n}{of} {'pair' if self.n == 1 and not of else 'pairs'}"
 
     @property
     def medians(self) -> tuple[float, float]:

@@ -13,6 +13,7 @@ from numpy.typing import NDArray
 from runner.base.arrays import FloatArray
 from runner.base.dotted_keys import split_override
 from runner.base.errors import RunnerError, StoreError, unknown
+from runner.schema.units import read_quantity
 
 _PLAIN = re.compile(r"[\w./+-]+|\$\{[\w.]+\}", re.ASCII)
 _OTHER_KIND = re.compile(r"(?i)null|true|false|[+-]?(inf|nan|[\d._]+(e[+-]?[\d_]+)?)")
@@ -207,14 +208,15 @@ class Axis:
         """Return the level of a number or a string.
 
         Args:
-            value: The value.
+            value: The value; a number may have a unit, such as 0.05deg.
             option: Option that gave the value, such as "--where robot=macro"; a message begins with it.
 
         Raises:
             RunnerError: If the axis has no such value; the message lists its values.
         """
         wanted = str(value).strip("'\"")
-        number = _number(wanted)
+        typed = read_quantity(wanted)
+        number = typed.in_unit(self.unit) if typed else _number(wanted)
         for level, (own, text) in enumerate(zip(self.values, self.texts, strict=True)):
             if wanted == text or (number is not None and number in (own, _number(text))):
                 return level

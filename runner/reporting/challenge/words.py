@@ -53,7 +53,7 @@ def answer_text(made: Challenge) -> str:
     question, fresh = made.question, made.fresh
     a, b = (side.name for side in question.sides)
     if not question.sign:
-        return f"no difference shown between {a} and {b}"
+        return f"no difference that counts is shown between {a} and {b}"
     effect = question.size if fresh is None or fresh.effect is None else fresh.effect
     smaller, larger = (b, a) if question.sign < 0 else (a, b)  # the effect is a share of the larger one
     return f"{_size(effect, question.is_fraction)} smaller with {smaller} than with {larger}".strip()

@@ -112,7 +112,7 @@ def compare(pairs: Pairs, metric: str) -> PairedComparison | None:
     empty = present & is_empty(first, second)
     both = present & ~empty
     levels = int(empty.reshape(len(pairs), -1).any(axis=1).sum())
-    left_out = Empty(int(empty.sum()), int(present.sum()), levels, len(pairs))
+    neither = Empty(int(empty.sum()), int(present.sum()), levels, len(pairs))
     kept, draw = np.unique(draws[both], return_inverse=True)
     differences = second[both] - first[both]
     if copies:
@@ -123,7 +123,8 @@ def compare(pairs: Pairs, metric: str) -> PairedComparison | None:
         chosen = np.arange(len(kept))
     one, other, by_draw = (_mean_by(draw, values)[chosen] for values in (first[both], second[both], differences))
     error = _error(pairs, metric) if metric in a.finer and metric in b.finer else None
-    return PairedComparison(one, other, by_draw, error, _largest_rounding(pairs, metric), copies, left_out)
+    left_out = 0 if copies else len(kept) - len(chosen)
+    return PairedComparison(one, other, by_draw, error, _largest_rounding(pairs, metric), copies, neither, left_out)
 
 
 def _largest_rounding(pairs: Pairs, metric: str) -> float:

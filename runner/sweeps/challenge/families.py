@@ -116,7 +116,7 @@ def _duration(case: Case, value: Value) -> SidesChange:
     durations = case.values("trajectory.duration")
     for own, whole, motion in zip(new, case.values("duration"), durations, strict=True):
         if whole is not None:
-            own.append(f"duration={_text(whole + (float(value) - 1.0) * motion)}")
+            own.append(f"duration={_text(whole + (float(value) - 1.0) * min(whole, motion))}")  # of what is simulated
     one = len(set(durations)) == 1
     label = (
         f"a motion of {number(float(value) * float(durations[0]))} s"

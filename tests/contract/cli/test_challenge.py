@@ -20,7 +20,7 @@ from runner.reporting.stored import compose_report
 from runner.statistics.scope import first_pairs
 from runner.sweeps.challenge.case import Case, check_case
 from runner.sweeps.challenge.combinations import combine
-from runner.sweeps.challenge.families import FAMILIES, NotApplicableError, _step
+from runner.sweeps.challenge.families import FAMILIES, NotApplicableError, _duration, _step
 from runner.sweeps.challenge.question import CLASSES
 from runner.sweeps.challenge.stored import open_challenge
 from runner.sweeps.challenge.table import change_values, list_variations, read_values
@@ -254,6 +254,13 @@ def test_what_does_not_apply_is_left_out_with_its_reason(sweep):
     assert change_values({}, ["a.b=[1,2],[3,4]", "gravity=9"], []) == {"a.b": ["[1,2]", "[3,4]"], "gravity": [9.0]}
     order = [list(CLASSES).index(one.kind) for one in found]
     assert order == sorted(order)
+
+
+@pytest.mark.parametrize(("whole", "value", "simulated"), [(3.0, 0.5, 2.0), (1.0, 0.5, 0.5), (1.0, 2.0, 2.0)])
+def test_a_slower_motion_is_cut_off_at_the_same_share(whole, value, simulated):
+    config = validate(compose(["robot=macro", "trajectory=quintic", "trajectory.duration=2", f"duration={whole}"]))
+    changed = _duration(Case((), (config,)), value)
+    assert changed.sides == [[f"trajectory.duration={2.0 * value}", f"duration={simulated}"]]
 
 
 def test_a_plant_that_integrates_nothing_has_no_finer_step():

@@ -93,7 +93,7 @@ def test_commands_read_it(cli, many):
     other = cli(*SHORT, f"repetitions={MANY}", "controller.natural_frequency=9").folder
     assert cli("verify", many.folder.parent.parent).code == 0
     assert f"n = {MANY} repetitions" in cli("table", many.folder).out
-    assert f"{MOST_PAIRS} pairs" in cli("compare", many.folder, other, "--metrics", "rms_torque").out
+    assert f"{MOST_PAIRS} of {MANY} pairs" in cli("compare", many.folder, other, "--metrics", "rms_torque").out
     report = cli("report", many.folder, "--format", "html").folder / "report.html"
     text = report.read_text(encoding="utf-8")
     assert f"Metrics over {MANY} repetitions; levels are quantiles" in text

@@ -111,6 +111,8 @@ def test_very_many_pairs_are_drawn_from_and_n_says_so():
     sweep = replace(sweep, seeds=np.repeat(np.arange(3000), 2))
     (found,) = compare_levels(sweep, "controller")
     assert found.comparison.n == MOST_PAIRS
+    assert found.comparison.count == f"{MOST_PAIRS} of 6000 pairs"
+    assert f", {MOST_PAIRS} of 6000 pairs, " in found.clause()
     assert found.comparison.difference == pytest.approx(1.0, abs=1e-3)
     assert (
         compare_levels(sweep, "controller")[0].comparison.differences.tolist() == found.comparison.differences.tolist()
