@@ -274,7 +274,7 @@ class _Judge:
                 found["torque", joint] = (
                     _left_over(motion, joint, y, model)  # its constant may be wrong
                     if joint in self.currents
-                    else _left_over(motion, joint, y - model)
+                    else self.unexplained(motion, joint, model)
                 )
         axes = ~np.isnan(motion.tip[0])
         if axes.any():
@@ -285,6 +285,11 @@ class _Judge:
             if np.ptp(command) > MOVES:
                 found["reference", joint] = float(np.linalg.norm(own - command) / np.linalg.norm(command))
         return found
+
+    def unexplained(self, motion: EvenMotion, joint: int, model: FloatArray) -> float:
+        """Return the share of a torque that the model's, of shape (N,), and friction do not explain, with any rotor."""
+        without_rotor = model - self._model.armature[joint] * motion.ddq[:, joint]
+        return _left_over(motion, joint, motion.torque[:, joint] - without_rotor)
 
     def tip_rest(self, motion: EvenMotion) -> tuple[FloatArray, FloatArray]:
         """Return the residual of the tip, shape (3 N,), and its offsets in the frame of the tip and in the base."""
@@ -388,7 +393,7 @@ def _scales(
         scale = float(y @ model) / max(float(model @ model), _ZERO)
         friction = [motion.dq[:, joint], np.sign(motion.dq[:, joint])]
         inverse = float(np.linalg.lstsq(np.column_stack([y, *friction]), model)[0][0])  # without noise in the model
-        lack, then = _left_over(motion, joint, y - model), _left_over(motion, joint, y, model)
+        lack, then = judge.unexplained(motion, joint, model), _left_over(motion, joint, y, model)
         low = scale < 1.0 / _OTHER_SCALE and inverse > _OTHER_SCALE
         high = scale > _OTHER_SCALE and inverse < 1.0 / _OTHER_SCALE
         if scale <= 0.0 or not (low or high) or lack < _DOUBTED or then >= _HALVED * lack:

@@ -134,6 +134,12 @@ def test_torques_of_another_meaning_are_asked_for(arm):
     assert question.endswith("Say holds: without_gravity.")
 
 
+@pytest.mark.parametrize("rotor", [0.0, 0.2, 2.0])
+def test_torques_of_an_arm_with_other_rotors_are_in_no_other_unit(arm, rotor):
+    log = made(arm.with_armature(np.full(arm.nq, rotor)))
+    assert check_consistency(arm.with_armature(np.full(arm.nq, 0.4)), log).questions == ()
+
+
 @pytest.mark.costs(3)
 def test_clipped_torques_are_not_taken_for_another_meaning(arm):
     def clipped(share):
