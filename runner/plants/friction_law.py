@@ -13,7 +13,7 @@ from runner.base.memory import Memory
 from runner.schema.values import FrictionConfig, expand
 from runner.symbolic.arm import to_scalars
 from runner.symbolic.maths import Backend
-from runner.symbolic.vectors import Matrix, Scalar, Vector
+from runner.symbolic.vectors import Matrix, Scalar, Vector, is_number
 
 _STEEPEST = 700.0  # exp of it is a double
 _EXPONENTS = {"exponential": 1, "gauss": 2}
@@ -63,7 +63,7 @@ class JointFriction(NamedTuple):
     @property
     def dry(self) -> bool:
         """Whether a joint has dry friction."""
-        return any(value != 0.0 for value in [*self.coulomb, *self.stiction])
+        return not all(is_number(value, 0.0) for value in [*self.coulomb, *self.stiction])
 
     def of(self, joints: slice | NDArray[np.bool_]) -> "JointFriction":
         """Return the friction of some of the joints."""
@@ -91,9 +91,9 @@ class JointFriction(NamedTuple):
         """
         damping, level = list(self.viscous), list(self.coulomb)
         for joint, speed in enumerate(v):
-            if self.slopes[0][joint] != 0.0:
+            if not is_number(self.slopes[0][joint], 0.0):
                 damping[joint] = damping[joint] + self._secant(backend, joint, speed)
-            if self.stiction[joint] != 0.0:
+            if not is_number(self.stiction[joint], 0.0):
                 weight = backend.select(held[joint], 1.0, self._weight(backend, joint, speed))
                 level[joint] = level[joint] + self.stiction[joint] * weight
         return damping, level

@@ -251,8 +251,7 @@ class BulletStep:
         """Return the rotation from the parent's frame to the link's, and the vector between their origins in it."""
         if link.turn is not None and link.joint is not None:
             half = times(minus(0.0, q[link.joint]), 0.5)
-            s = self._functions.sine(half)
-            s = s if link.length == 1.0 else s / link.length
+            s = self._functions.sine(half) / link.length
             about = [*(times(axis, s) for axis in link.angular), self._functions.cosine(half)]
             turned = quaternion_product(about, link.turn)
             return rotation_matrix(turned), add(link.offset, rotate(turned, link.pivot))

@@ -84,6 +84,12 @@ class Expression:
 
     __gt__ = __le__ = __ge__ = __lt__
 
+    @_by_scalar
+    def __eq__(self, other: object) -> bool:
+        raise TypeError("it compares values: use backend.equal")
+
+    __hash__ = object.__hash__
+
 
 def expression(value: Value) -> Expression:
     """Return a number as a constant, or an expression unchanged."""
@@ -174,6 +180,21 @@ def in_order(outputs: Iterable[Expression]) -> Iterator[Expression]:
             else:
                 waiting.append((node, True))
                 waiting += [(operand, False) for operand in reversed(node.operands) if isinstance(operand, Expression)]
+
+
+def are_same(one: Sequence[Value], other: Sequence[Value]) -> bool:
+    """Return True if two lists of values are computed by the same operations, in the same order."""
+    numbers: dict[tuple[Any, ...], int] = {}
+    of_node: dict[int, int] = {}
+    both_lists = [[expression(value) for value in values] for values in (one, other)]
+    for node in in_order([*both_lists[0], *both_lists[1]]):
+        key = (
+            node.operation,
+            *(of_node[id(part)] if isinstance(part, Expression) else (part,) for part in node.operands),
+        )
+        of_node[id(node)] = numbers.setdefault(key, len(numbers))
+    first, second = ([of_node[id(value)] for value in values] for values in both_lists)
+    return first == second
 
 
 def all_of(conditions: Sequence[Expression]) -> Expression:

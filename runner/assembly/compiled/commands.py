@@ -9,7 +9,7 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from runner.assembly.compiled.law import LawScalars, expressed_torque, law_cache_key, law_scalars
+from runner.assembly.compiled.law import LawScalars, are_ours, expressed_torque, law_cache_key, law_scalars
 from runner.assembly.run_config import RunConfig
 from runner.base.arrays import FloatArray
 from runner.base.errors import SimulationError
@@ -31,8 +31,6 @@ from runner.symbolic.maths import Array
 from runner.symbolic.program import Expressed, Program, program
 from runner.symbolic.structure import CannotCompileError, any_number, constants_in, values_of
 from runner.symbolic.vectors import as_array
-
-_OURS = ("runner", "abc", "typing", "builtins")
 
 
 @dataclass(frozen=True)
@@ -119,8 +117,7 @@ class Commands:
     @property
     def are_ours(self) -> bool:
         """True if all laws are built-in."""
-        kinds = [kind for loop in self.loops for law in _parts(loop.law) for kind in type(law).__mro__]
-        return all(kind.__module__.partition(".")[0] in _OURS for kind in kinds)
+        return are_ours(law for loop in self.loops for law in _parts(loop.law))
 
     @property
     def _rounded(self) -> NDArray[np.bool_]:

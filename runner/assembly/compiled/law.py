@@ -1,6 +1,7 @@
 """Torque law over expressions."""
 
-from collections.abc import Callable
+from collections.abc import Callable, Iterable, Sequence
+from copy import copy
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -10,11 +11,12 @@ from runner.controllers.torque_law import Tip, TorqueLaw
 from runner.symbolic.algebra import ArmAlgebra
 from runner.symbolic.arm import ArmConstants, constants_of
 from runner.symbolic.backend import SymbolicBackend
-from runner.symbolic.expression import Value
+from runner.symbolic.expression import Value, are_same
 from runner.symbolic.maths import Array
 from runner.symbolic.structure import CannotCompileError, any_number, arm_pattern, plain_structure, scalars
 from runner.symbolic.vectors import as_array
 
+_OURS = ("runner", "abc", "typing", "builtins")
 _MEMORY = Memory(256)  # for patterns of laws
 
 
@@ -104,16 +106,44 @@ def expressed_torque(
     Raises:
         CannotCompileError: if the law uses an operation that expressions do not support.
     """
-    backend = SymbolicBackend()
-    arms = [ExpressedArm(ArmAlgebra(constants), backend, law.gravity_compensation) for constants in own.arms]
+    given = time, as_array(q), as_array(dq), reference, as_array(memory)
     try:
-        torque, after = law.evaluate(arms, own.numbers, time, as_array(q), as_array(dq), reference, as_array(memory))
+        torque, after, backend = _evaluated(copy(law), own, given)
+        if not are_ours([law]):
+            _check_pure(law, own, given, [*torque, *after])
     except Exception as error:
         reason = f"its `evaluate` does what expressions cannot do: {error}"
         raise CannotCompileError(
             f"{type(law).__name__} is not compiled, and runs through Pinocchio: {reason}"
         ) from error
+    return torque, after, backend
+
+
+def _evaluated(law: TorqueLaw[Any], own: LawScalars, given: Any) -> tuple[list[Value], list[Value], SymbolicBackend]:
+    backend = SymbolicBackend()
+    arms = [ExpressedArm(ArmAlgebra(constants), backend, law.gravity_compensation) for constants in own.arms]
+    torque, after = law.evaluate(arms, own.numbers, *given)
     return list(np.asarray(torque).tolist()), list(np.asarray(after).tolist()), backend
+
+
+def _check_pure(law: TorqueLaw[Any], own: LawScalars, given: Any, found: Sequence[Value]) -> None:
+    """Check that a user's law gives the same expressions again, and stores nothing in itself.
+
+    Raises:
+        TypeError: if it does not.
+    """
+    again = copy(law)
+    torque, after, _ = _evaluated(again, own, given)
+    if changed := [name for name, value in vars(again).items() if vars(law).get(name) is not value]:
+        raise TypeError(f"it changes {', '.join(changed)}; keep that in the state")
+    if not are_same(found, [*torque, *after]):
+        raise TypeError("a second call gives something else; keep what changes in the state")
+
+
+def are_ours(laws: Iterable[TorqueLaw[Any]]) -> bool:
+    """Return True if all laws are built-in."""
+    kinds = [kind for law in laws for kind in type(law).__mro__]
+    return all(kind.__module__.partition(".")[0] in _OURS for kind in kinds)
 
 
 def law_cache_key(law: TorqueLaw[Any]) -> str:

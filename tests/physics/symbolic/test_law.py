@@ -197,6 +197,31 @@ class Stubborn(Transposed):
         return np.array([float(entry) for entry in q]), state
 
 
+class Branching(Transposed):
+    def evaluate(self, arms, parameters, time, q, dq, reference, state):
+        torque, state = super().evaluate(arms, parameters, time, q, dq, reference, state)
+        return (0.0 * torque if reference[1][0] == 0.0 else torque), state
+
+
+class Integrating(Transposed):
+    total = 0.0
+
+    def evaluate(self, arms, parameters, time, q, dq, reference, state):
+        torque, state = super().evaluate(arms, parameters, time, q, dq, reference, state)
+        self.total = self.total + q[0]
+        return torque - self.total, state
+
+
+CALLS = []
+
+
+class Counting(Transposed):
+    def evaluate(self, arms, parameters, time, q, dq, reference, state):
+        torque, state = super().evaluate(arms, parameters, time, q, dq, reference, state)
+        CALLS.append(time)
+        return float(len(CALLS)) * torque, state
+
+
 def users_law(kind):
     config = configured("macro", "operational_space")
     return kind([config.arm.model], True, Gains(120.0, 7.0)), states(config.arm.model, config.arm.home)
@@ -247,6 +272,21 @@ def test_a_law_that_cannot_be_compiled_says_why_once_and_runs_as_it_is(capsys):
         line for line in said if line.startswith("runner: Stubborn is not compiled, and runs through Pinocchio: ")
     ]
     assert sum("not compiled" in line for line in said) == 1
+
+
+@pytest.mark.parametrize(
+    ("kind", "reason"),
+    [
+        (Branching, "it compares values: use backend.equal"),
+        (Integrating, "it changes total; keep that in the state"),
+        (Counting, "a second call gives something else; keep what changes in the state"),
+    ],
+)
+def test_a_law_whose_code_would_compute_something_else_is_not_compiled(kind, reason):
+    law, measured = users_law(kind)
+    with pytest.raises(CannotCompileError, match=reason):
+        compiled_torques(law, measured)
+    assert vars(law).keys() == vars(users_law(Transposed)[0]).keys()
 
 
 def test_a_law_that_keeps_something_unknown_is_not_compiled():
