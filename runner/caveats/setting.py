@@ -39,6 +39,7 @@ class RunSetting:
         torque_limits: Torque limit of each joint at rest, shape (nq,), in N m; infinite without a limit.
         speed_limits_torque: True if a torque limit depends on the speed.
         plant: Kind of the plant.
+        stops: True if the plant stops joints at their position limits, with some compliance.
         torques: True if controllers command torques instead of joint positions.
         ticks_per_torque: Number of ticks for which the torque of each joint is constant, shape (nq,).
         tracked: True if the tip must follow a path, instead of only reaching a goal.
@@ -64,6 +65,7 @@ class RunSetting:
     torque_limits: FloatArray
     speed_limits_torque: bool
     plant: str
+    stops: bool
     torques: bool
     ticks_per_torque: NDArray[np.intp]
     tracked: bool
@@ -89,6 +91,7 @@ def setting_of(config: "RunConfig", q_start: FloatArray | None = None) -> RunSet
     from runner.caveats.contact_stability import force_contact, servo_contact
     from runner.caveats.time_constants import slowest_part
     from runner.controllers.stability import velocity_loop
+    from runner.plants import PLANTS
 
     model = config.arm.model
     units, position_limits, mass = _of_model(model)
@@ -107,6 +110,7 @@ def setting_of(config: "RunConfig", q_start: FloatArray | None = None) -> RunSet
         torque_limits=config.torque_limits.max,
         speed_limits_torque=config.torque_limits.depend_on_speed,
         plant=config.plant.kind,
+        stops=PLANTS.features(config.plant.kind).STOPS,
         torques=config.commands == "torque",
         ticks_per_torque=ticks,
         tracked=config.path.tracked,

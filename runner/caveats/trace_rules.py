@@ -10,6 +10,7 @@ from runner.caveats.setting import IDEAL, RunSetting, RunSignals
 _AT_LIMIT = 1.0 - 1e-12  # as in the metric saturation_fraction
 _SIZED = 60  # most rows, including the last one, used for the size of a motion
 _DIGITS_OF_SPEED = 9  # a speed at its limit may exceed it by rounding
+_ON_STOP = 1e-4  # rad, or m
 _END = 10  # for a motion to a goal, the last tenth of the run is evaluated
 
 
@@ -56,9 +57,25 @@ def _beyond(signals: RunSignals, setting: RunSetting) -> FloatArray:
 
 
 def _tell_beyond(value: float, joint: int, setting: RunSetting) -> str:
+    where = f"{called(joint, setting)} goes {value:.3g} {setting.joint_units[joint]} beyond its position limits"
+    if setting.stops:
+        return f"{where}: the stops of the plant {setting.plant} give way"
+    return f"{where}, at which the plant {setting.plant} does not hold it"
+
+
+def _stopped(signals: RunSignals, setting: RunSetting) -> FloatArray:
+    """Return the fraction of ticks at which each joint is on a stop, shape (..., nq); 0 for plants without stops."""
+    if not setting.stops:
+        return np.zeros_like(signals.saturation)
+    lower, upper = setting.position_limits
+    share: FloatArray = ((signals.q <= lower + _ON_STOP) | (signals.q >= upper - _ON_STOP)).mean(axis=-2)
+    return share
+
+
+def _tell_stopped(value: float, joint: int, setting: RunSetting) -> str:
     return (
-        f"{called(joint, setting)} goes {value:.3g} {setting.joint_units[joint]} beyond its position limits, "
-        f"at which the plant {setting.plant} does not hold it"
+        f"{called(joint, setting)} is on a stop of the plant {setting.plant}, at a position limit, in "
+        f"{percent(value)} of the ticks; other plants may let it pass"
     )
 
 
@@ -99,9 +116,10 @@ def _chatter(signals: RunSignals, setting: RunSetting) -> FloatArray:
     tau = np.ascontiguousarray(signals.tau.swapaxes(-1, -2)[..., often, :])  # one row for each joint is faster
     if setting.speed_limits_torque:
         limits = signals.limits.swapaxes(-1, -2)[..., often, : tau.shape[-1]]
-        leap = np.maximum(_AT_LIMIT * (limits[..., 1:] + limits[..., :-1]), 1e-300)  # no change is not a jump
+        leap = _AT_LIMIT * (limits[..., 1:] + limits[..., :-1])
     else:
         leap = 2.0 * _AT_LIMIT * signals.limits[..., often, None]  # largest possible change of a torque
+    leap = np.maximum(leap, 1e-300)  # no change is not a jump
     jumps = (np.abs(tau[..., 1:] - tau[..., :-1]) >= leap).sum(axis=-1)
     share[..., often] = jumps * setting.ticks_per_torque[often] / tau.shape[-1]
     return np.minimum(share, 1.0)
@@ -125,6 +143,7 @@ TRACE_RULES = (
     TraceRule("saturation", lambda signals, setting: signals.saturation, _tell_saturated),
     TraceRule("chatter", _chatter, _tell_chatter),
     TraceRule("joint_limits", _beyond, _tell_beyond),
+    TraceRule("joint_stops", _stopped, _tell_stopped),
     TraceRule("joint_speed", _speeding, _tell_speeding),
 )
 """Rules in the order of output."""

@@ -56,6 +56,7 @@ THRESHOLDS: Mapping[str, tuple[str, Any, str]] = {
     ),
     "did_not_follow": ("share", PositiveFloat, "Allowed tip error as a fraction of the size of the tip's motion."),
     "joint_limits": ("excess", Radians[NonNegativeFloat], "Allowed excess of a joint over a position limit, in rad."),
+    "joint_stops": ("share", _Share, "Allowed fraction of the ticks at which a joint is on a stop of the plant."),
     "joint_speed": ("share", PositiveFloat, "Allowed speed of a joint as a fraction of its speed limit."),
     "exact_velocity": (
         "noise",

@@ -58,6 +58,7 @@ class PlantFeatures(Features):
     Attributes:
         IMPLICIT_CONTACT: True if the plants compute the contact force of a wall in each step, from the velocity at the
             end of the step.
+        STOPS: True if the plants stop joints at their position limits, with some compliance.
         default_step: Function of the control tick, in s, and the number of stages. It returns the integration step, in
             s, for a config without step.
         motion: Function of the config, the robot, the step in s, and the steps in a tick. It returns the motion of the
@@ -70,6 +71,7 @@ class PlantFeatures(Features):
     """
 
     IMPLICIT_CONTACT: bool = False
+    STOPS: bool = False
     default_step: Callable[[float, int], float] = lambda tick, stages: tick
     motion: Callable[[Any, Robot, float, int], Motion | None] = lambda config, robot, step, steps_per_tick: None
     modes: Callable[[Any, Robot, FloatArray], list[Mode]] = lambda config, robot, q: []

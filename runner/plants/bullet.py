@@ -16,6 +16,7 @@ from runner.robots.model import RobotModel
 from runner.robots.robot import Robot
 
 IMPLICIT_CONTACT = True  # a wall's spring and damper act in each step, from the velocity at its end
+STOPS = True
 
 
 class BulletConfig(TorquePlantConfig):

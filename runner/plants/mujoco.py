@@ -22,6 +22,7 @@ from runner.robots.robot import Robot
 from runner.schema.units import AxisInertia
 
 IMPLICIT_CONTACT = True  # a wall's spring and damper act in each step, from the velocity at its end
+STOPS = True
 Integrator = Literal["euler", "rk4"]
 _INTEGRATORS = {
     "euler": mujoco.mjtIntegrator.mjINT_EULER,

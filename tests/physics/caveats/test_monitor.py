@@ -144,7 +144,9 @@ def test_an_arm_that_gives_way_has_nothing_to_follow_among_others(checked_config
     config = checked_config("robot=macro", ASKED, "trajectory=quintic")
     watches = [Watch(replace(setting_of(config), complies=True), config.caveats) for _ in range(3)]
     look_together(watches, stacked(*(some_signals(np.inf, 4) for _ in range(3))))
-    assert [[caveat.rule for caveat in watch.found().caveats] for watch in watches] == [["joint_limits"]] * 3
+    assert [[caveat.rule for caveat in watch.found().caveats] for watch in watches] == [
+        ["joint_limits", "joint_stops"]
+    ] * 3
 
 
 def test_the_signals_of_many_traces_are_those_of_each(hand_made_trace):

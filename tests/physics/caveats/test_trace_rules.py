@@ -50,7 +50,7 @@ def test_an_arm_that_is_to_stay_or_to_give_way_has_nothing_to_follow(path):
 def test_a_joint_beyond_its_position_limits_is_told(path):
     limits = np.array([[-1.0, -2.0, -np.inf], [1.0, 2.0, np.inf]])
     q = ROWS * [0.9, -2.05, 99.0]
-    caveat = found(path, signals(q=q), position_limits=limits, plant="rk4")["joint_limits"]
+    caveat = found(path, signals(q=q), position_limits=limits, plant="rk4", stops=False)["joint_limits"]
     assert caveat.value == pytest.approx(0.05)
     assert caveat.text == ("joint q2 goes 0.05 rad beyond its position limits, at which the plant rk4 does not hold it")
 
@@ -58,6 +58,27 @@ def test_a_joint_beyond_its_position_limits_is_told(path):
 def test_a_joint_at_its_position_limit_has_no_caveat(path):
     limits = np.array([[-1.0, -2.0, -3.0], [1.0, 2.0, 3.0]])
     assert found(path, signals(q=ROWS * [1.0, -2.005, 3.0]), position_limits=limits) == {}
+
+
+def test_a_plant_with_stops_tells_which_joint_is_on_one(path):
+    limits = np.array([[-1.0, -2.0, -np.inf], [1.0, 2.0, np.inf]])
+    q = np.clip(ROWS * [2.0, -1.9, 99.0], None, [1.002, 3.0, np.inf])  # a stop gives way by 2 mrad
+    stopped = found(path, signals(q=q), position_limits=limits, plant="bullet", stops=True)["joint_stops"]
+    assert stopped.value == pytest.approx(51 / 101)
+    assert stopped.text == (
+        "joint q1 is on a stop of the plant bullet, at a position limit, in 50.5 % of the ticks; "
+        "other plants may let it pass"
+    )
+    assert found(path, signals(q=q), position_limits=limits, plant="rk4", stops=False) == {}
+    beyond = found(path, signals(q=ROWS * [1.5, 0.0, 0.0]), position_limits=limits, plant="bullet", stops=True)
+    assert beyond["joint_limits"].text.endswith("its position limits: the stops of the plant bullet give way")
+
+
+@pytest.mark.parametrize("plant", ["bullet", "mujoco"])
+def test_a_goal_beyond_a_stop_is_told_by_engines_that_have_stops(make_run, plant):
+    run = make_run("robot=xarm7", "controller=joint_pd", "trajectory=goal", f"plant={plant}", "duration=0.5",
+                   "controller.gravity_compensation=false", "torque_limits.max=0.5")  # fmt: skip
+    assert "joint_stops" in {caveat["rule"] for caveat in run.caveats}
 
 
 def test_a_run_on_rk4_passes_a_limit_and_says_so(make_run):
