@@ -10,7 +10,8 @@ from collections.abc import Callable
 import numpy as np
 from numpy.typing import NDArray
 
-from runner.reporting.answers import AskedComparison, judge
+from runner.reporting.answers import judge
+from runner.reporting.asked import AskedComparison
 from runner.reporting.comparison.sweeps import compare_levels
 from runner.reporting.conditions import conditions_of
 from runner.statistics import compare_paired

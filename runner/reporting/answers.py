@@ -7,7 +7,7 @@ is exact and not tested. A torque at its limit is not compared.
 """
 
 import math
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import cached_property
 from typing import NamedTuple
@@ -16,12 +16,11 @@ import numpy as np
 
 from runner.base.quantities import ROUNDING, choose_unit, number, quantity, share_of_larger
 from runner.caveats.rounding_growth import SENSITIVE
-from runner.reporting.comparison.pairs import Pairs, compare, label_text
-from runner.reporting.limits import find_limit
+from runner.reporting.asked import EQUAL, AskedComparison
 from runner.reporting.metric_titles import capital, title
 from runner.reporting.table import Cell, Number
-from runner.statistics import SMALLEST_SAMPLE, PairedComparison, fewest_pairs, holm, holm_levels
-from runner.statistics.conclusion import ALPHA, SHARE, conclusion_sign, larger_median, least_difference
+from runner.statistics import SMALLEST_SAMPLE, fewest_pairs, holm, holm_levels
+from runner.statistics.conclusion import ALPHA, SHARE, conclusion_sign, least_difference
 
 PAIRS = (
     "A pair is one draw of both: the same seed and repetition, cells that share a draw by their mean. Differences are "
@@ -49,7 +48,6 @@ HEADER = ("difference", "interval", "n", "effect", "p")
 """Columns between the names of what is compared and the word."""
 
 _SMALLEST = 1e-3  # p-value that is printed
-_EQUAL = 1e-9  # largest difference of a pair, relative to the larger median, that is rounding
 _SHARES = (0.05, SHARE)  # differences, relative to the larger median, for which pairs are counted
 _PLAIN = (1e-4, 1e5)  # sizes that are printed without a power of ten
 _MOST_DIGITS = 5  # of a printed value
@@ -69,68 +67,6 @@ class PrintedNumbers(NamedTuple):
     amount: str
     ends: str
     share: str
-
-
-@dataclass(frozen=True, eq=False)
-class AskedComparison:
-    """A comparison in one metric.
-
-    Attributes:
-        metric: Name of the metric.
-        unit: Its unit.
-        comparison: The second against the first, draw by draw.
-        pairs: The compared cells.
-        limit: Joint at its torque limit that the metric shows instead of a law; empty for none.
-    """
-
-    metric: str
-    unit: str
-    comparison: PairedComparison
-    pairs: Pairs | None = None
-    limit: str = ""
-
-    @property
-    def is_lost(self) -> bool:
-        """True if no draw has a value in either."""
-        return not self.comparison.n
-
-    @property
-    def is_tested(self) -> bool:
-        """True if the difference is tested: something is drawn, has a value and is at no limit."""
-        return not (self.limit or self.comparison.exact or self.is_lost)
-
-    @property
-    def at(self) -> Mapping[str, str]:
-        """The levels that two levels are compared within, or the label of the only pair of cells."""
-        return self.pairs.at if self.pairs else {}
-
-    @property
-    def place(self) -> str:
-        """These levels as a string, such as "robot=macro", or "all"."""
-        return label_text(self.at) if self.at else "all"
-
-    @property
-    def within_rounding(self) -> bool:
-        """True if no pair differs by more than rounding changes the metric."""
-        return self._differs_at_most(max(_EQUAL, self.comparison.rounding))
-
-    def _differs_at_most(self, share: float) -> bool:
-        return bool(np.abs(self.comparison.differences).max(initial=0.0) <= max(ROUNDING, share * self._larger))
-
-    @property
-    def _larger(self) -> float:
-        return larger_median(self.comparison)
-
-    @property
-    def full_names(self) -> tuple[str, str]:
-        """The names; numbers with their axis, such as "controller.period=0.01"."""
-        axis = self.pairs.axis if self.pairs else ""
-        return (f"{axis}={self.names[0]}", f"{axis}={self.names[1]}") if axis else self.names
-
-    @property
-    def names(self) -> tuple[str, str]:
-        """Names of what is compared: levels of an axis, or sweeps."""
-        return (self.pairs.first, self.pairs.second) if self.pairs else ("A", "B")
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)
@@ -165,7 +101,7 @@ class Answer(AskedComparison):
     def equal(self) -> bool:
         """True if all pairs are equal up to rounding, and their signs show no difference if rounding is not small."""
         return not (self.limit or self.is_lost) and (
-            self._differs_at_most(_EQUAL) or (self.within_rounding and not self.sign)
+            self.differs_at_most(EQUAL) or (self.within_rounding and not self.sign)
         )
 
     @property
@@ -185,6 +121,11 @@ class Answer(AskedComparison):
         return bool(self.limit) or self.is_lost or self.comparison.exact or self.equal or self.interval is not None
 
     @property
+    def fewest(self) -> int:
+        """The fewest pairs that can show a difference in so many comparisons."""
+        return fewest_pairs(min(self.level, ALPHA / max(self.family, 1)))
+
+    @property
     def word(self) -> str:
         """Relation of the second to the first, or the reason why none is shown."""
         found, size = self.comparison, abs(self.comparison.difference)
@@ -197,7 +138,7 @@ class Answer(AskedComparison):
         if not found.exact and self.p_value is None:
             return f"too few pairs to say ({found.n} of {SMALLEST_SAMPLE})"
         if self.p_value is not None and self.p_value >= ALPHA:
-            few = f"too few pairs for {self.family} comparisons ({found.n} of {fewest_pairs(self.level)})"
+            few = f"too few pairs for {self.family} comparisons ({found.n} of {self.fewest})"
             return "no difference shown" if self.interval else few
         if found.error is not None and size <= found.error:
             left = quantity(found.error, self.unit, 2) if np.isfinite(found.error) else "a run fails on a finer step"
@@ -246,7 +187,7 @@ class Answer(AskedComparison):
             return [shown.values[0], "–", f"not compared: {self.limit}"]
         if self.is_lost:
             return [shown.values[0], "–", self.word]
-        difference = "0" if self._differs_at_most(_EQUAL) else f"{minus}{shown.amount}"
+        difference = "0" if self.differs_at_most(EQUAL) else f"{minus}{shown.amount}"
         ends = f" ({shown.ends})" if shown.ends and difference != "0" else ""
         return [shown.values[0], f"{difference}{ends}", self.verdict]
 
@@ -309,7 +250,7 @@ class Answer(AskedComparison):
         size, most = (
             factor * max((abs(one) for one in some if np.isfinite(one)), default=0.0) for some in (shown, found.medians)
         )
-        if self._differs_at_most(_EQUAL) or not size:
+        if self.differs_at_most(EQUAL) or not size:
             size = most / 10.0  # three digits of the median
         decimals = 1 - math.floor(math.log10(size)) if size > 0.0 else 0
         finest = max(0, _MOST_DIGITS - 1 - math.floor(math.log10(most))) if most > 0.0 else decimals
@@ -332,8 +273,12 @@ class Answer(AskedComparison):
     def _range(self, ends: tuple[float, float] | None) -> str:
         if ends is None:
             return ""
-        low, high = ends
-        return f"{self._number(low)} to {self._quantity(high) if math.isfinite(high) else 'never'}"
+        low, high = (self._quantity(end) if math.isfinite(end) else "" for end in ends)
+        if low and high:
+            return f"{self._number(ends[0])} to {high}"
+        if low or high:
+            return f"above {low}" if low else f"below {high}"
+        return "beyond every number" if ends[0] == ends[1] else "unbounded"
 
     @property
     def power(self) -> str:
@@ -346,8 +291,8 @@ class Answer(AskedComparison):
         if self.sign or not self.is_tested or self.equal or (self.p_value is not None and self.p_value < ALPHA):
             return ""
         if self.interval is None:
-            return f" At least {fewest_pairs(self.level)} pairs are needed."
-        shown, larger = found.smallest_shown(self.level), self._larger
+            return f" At least {self.fewest} pairs are needed."
+        shown, larger = found.smallest_shown(self.level), self.larger
         if not shown or not larger:
             return ""
         best = max(shown, self.least)
@@ -359,15 +304,15 @@ class Answer(AskedComparison):
     @property
     def pairs_that_tell(self) -> int | None:
         """The number of pairs, more than these, that would show 5 % of the larger median, else 2 %; None if unknown."""
-        for wanted in (max(share * self._larger, self.least) for share in _SHARES):
+        for wanted in (max(share * self.larger, self.least) for share in _SHARES):
             count = self.comparison.pairs_needed(wanted, self.level)
             if count is not None and count > self.comparison.n:
                 return count
         return None
 
     def _with_share(self, size: float) -> str:
-        known = self._larger > ROUNDING and "fraction" not in self.metric
-        share = f"{number(100.0 * size / self._larger, 2)} % " if known else ""
+        known = self.larger > ROUNDING and "fraction" not in self.metric
+        share = f"{number(100.0 * size / self.larger, 2)} % " if known else ""
         factor, unit = self.scale
         text = f"{number(factor * size, 2, plain=_PLAIN[0])} {unit}".strip()
         return f"{share}({text})" if share else text
@@ -398,16 +343,6 @@ class Answer(AskedComparison):
         parts += [str(found.empty)]
         parts += ["integration error unknown"] if self.sign and found.error is None else []
         return f"{minus}{self.printed.amount} in pairs ({', '.join(filter(None, parts))})"
-
-
-def ask(pairs: Sequence[Pairs], metrics: Sequence[str]) -> list[AskedComparison]:
-    """Return the comparisons of some pairs of cells in some metrics, without those that have no value."""
-    return [
-        AskedComparison(metric, some.a.units[metric], found, some, find_limit(some.sides, metric))
-        for metric in metrics
-        for some in pairs
-        if (found := compare(some, metric)) is not None
-    ]
 
 
 def judge(asked: Sequence[AskedComparison], first: Sequence[str]) -> list[Answer]:

@@ -63,16 +63,17 @@ class ConditionAnswers:
             return "equal"
         if len(self.best) < len(self.names):
             return " or ".join(self.best)
-        if all(one.comparison.exact for one in self.answers):
-            return "equal, exact"
         words = {one.word.partition(" (")[0] for one in self.answers}
+        if all(one.comparison.exact for one in self.answers):
+            return f"{' or '.join(sorted(words))}, exact"
         few = all(word.startswith("too few") for word in words)
-        if len(words) == 1 and not few and words != {"no difference shown"}:
+        if few:
+            return f"too few pairs ({max(one.fewest for one in self.answers)} would do)"
+        if len(words) == 1 and words != {"no difference shown"}:
             return min(words)
         counts = [one.pairs_that_tell for one in self.answers if not one.sign]
         known = [count for count in counts if count]
-        word, would = ("too few pairs", "would do") if few else ("not shown", "pairs would")
-        return f"{word} ({number(float(max(known)), 2)} {would})" if known else word
+        return f"not shown ({number(float(max(known)), 2)} pairs would)" if known else "not shown"
 
     @property
     def is_saturated(self) -> bool:
@@ -98,7 +99,7 @@ def conditions_of(answers: Sequence[Answer], metric: str) -> list[ConditionAnswe
 def keep_described(answers: Sequence[Answer], whole: bool = True) -> list[Answer]:
     """Return answers without the pooled ones that do not describe their conditions.
 
-    A pooled answer stays if all its conditions have the same sign or none, and the medians of either side differ by at
+    A pooled answer stays if all its conditions have its sign or none, and the medians of either side differ by at
     most the factor ALIKE between conditions.
 
     Args:
@@ -126,8 +127,7 @@ def describes(pooled: Answer, cells: Sequence[Answer]) -> bool:
     cells = [one for one in cells if not one.is_lost]
     if not cells:
         return True
-    signs = {one.sign for one in cells} - {0}
-    if pooled.limit or len(signs | ({pooled.sign} - {0})) > 1:
+    if pooled.limit or {one.sign for one in cells} - {0, pooled.sign}:
         return False
     return all(_are_alike([one.comparison.medians[side] for one in cells]) for side in (0, 1))
 

@@ -58,7 +58,7 @@ def price(one: Answer, answers: Sequence[Answer]) -> str:
 
 def unanswerable(left_out: Sequence[Answer]) -> str:
     """Return the number of repetitions that answer the comparisons left out because of too few pairs."""
-    needed = max(fewest_pairs(min(one.level, ALPHA / max(one.family, 1))) for one in left_out)
+    needed = max(one.fewest for one in left_out)
     are = "comparison has" if len(left_out) == 1 else "comparisons have"
     return f"{len(left_out)} {are} too few pairs ({max(one.comparison.n for one in left_out)}): {needed} would do."
 

@@ -217,14 +217,12 @@ class PairedComparison:
 
     @property
     def _deviation(self) -> tuple[float, int] | None:
-        """Standard deviation of the differences and its degrees of freedom; None with fewer than three of them."""
-        one, other = self._numbers
-        return (float(np.std(other - one, ddof=1)), len(one) - 1) if len(one) >= 3 else None
+        """Standard deviation of the differences and its degrees of freedom.
 
-    @property
-    def _numbers(self) -> tuple[FloatArray, FloatArray]:
-        both = np.isfinite(self.a) & np.isfinite(self.b)
-        return self.a[both], self.b[both]
+        None with fewer than three of them, or if a pair has no number: it has no scatter that would tell.
+        """
+        known = self.n >= 3 and not any(self.lost)
+        return (float(np.std(self.b - self.a, ddof=1)), self.n - 1) if known else None
 
     @cached_property
     def _ranks(self) -> SignedRanks:

@@ -54,6 +54,7 @@ class Measurements:
         folder: Folder of the sweep or run.
         command: The command that makes the sweep or run.
         missing: Number of cells that are not stored.
+        unseen: Values of swept keys without any stored cell, such as "robot=macro".
         damage: Damaged files, a message for each.
         machines: Distinct machines that made the runs.
         question: Axis that a user asked about; empty for none.
@@ -79,6 +80,7 @@ class Measurements:
     folder: Path = Path()
     command: str = ""
     missing: int = 0
+    unseen: Sequence[str] = ()
     damage: Sequence[str] = ()
     machines: Sequence[Machine] = ()
     question: str = ""
@@ -260,7 +262,17 @@ def measure_stored(sweep: Sweep, name: str = "") -> Measurements:
             f"{sweep.folder}: none of its {len(sweep.hashes)} cells is stored; continue with: {sweep.continuation}"
         )
     missing = len(sweep.hashes) - len(part.hashes)
-    return replace(measure_sweep(part), name=name, folder=sweep.folder, missing=missing, damage=damage)
+    measured = measure_sweep(part)
+    unseen = _unseen(sweep, part) if missing else ()
+    return replace(measured, name=name, folder=sweep.folder, missing=missing, unseen=unseen, damage=damage)
+
+
+def _unseen(sweep: Sweep, part: Sweep) -> list[str]:
+    """Return the values of the swept keys of a sweep, as overrides, that no cell of a part of it has."""
+    seen = {text for job in part.overrides for text in job}
+    names = {axis.name for axis in axes_of(sweep.overrides)[0]}
+    every = dict.fromkeys(text for job in sweep.overrides for text in job if text.partition("=")[0] in names)
+    return [text for text in every if text not in seen]
 
 
 def stored_part(sweep: Sweep) -> tuple[Sweep, Sequence[str]]:

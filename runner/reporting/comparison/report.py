@@ -10,7 +10,8 @@ import numpy as np
 from runner.base.quantities import label_with_unit, quantity
 from runner.base.sanitize import few, one_line
 from runner.reporting.answer_map import make_map
-from runner.reporting.answers import EXPLAINED, HEADER, PAIRS, Answer, AskedComparison
+from runner.reporting.answers import EXPLAINED, HEADER, PAIRS, Answer
+from runner.reporting.asked import AskedComparison
 from runner.reporting.challenge.beside import scope_line
 from runner.reporting.comparison.difference_figure import difference_panel
 from runner.reporting.comparison.pairs import Label, Pairs, label_text

@@ -10,7 +10,9 @@ import numpy as np
 from runner.base.arrays import FloatArray
 from runner.base.errors import RunnerError
 from runner.base.quantities import ROUNDING
-from runner.reporting.answers import Answer, AskedComparison, ask, judge
+from runner.base.sanitize import few
+from runner.reporting.answers import Answer, judge
+from runner.reporting.asked import AskedComparison, ask
 from runner.reporting.comparison.differences import ConfigDifferences, find_differences
 from runner.reporting.comparison.pairs import Label, Pairs, keep_common_seeds, label_text, level_pairs, match
 from runner.reporting.conditions import ALIKE, keep_described
@@ -37,6 +39,7 @@ POOLED = (
     f"different signs, or if the medians of either side differ by more than a factor of {ALIKE:g} between cells."
 )
 
+FAILED = "a failed repetition counts as beyond every number; one that fails in both is in no pair and no median here"
 _MOST_OF_ONE = 3  # cells with the largest differences in the same metric
 _NAMED = 3  # cells without a partner that are named
 
@@ -75,11 +78,18 @@ class SweepComparison:
             if alone:
                 yield f"{format_count(len(alone), 'cell is', 'cells are')} only in {side.name}: {_some(alone)}"
             if side.missing:
-                left = format_count(side.missing, "cell", "cells")
-                yield f"{left} of {side.name} not stored; continue with: {side.command}"
+                yield left_told(side)
             if side.failed:
                 failed = format_count(side.failed, "cell", "cells")
-                yield f"{failed} of {side.name} failed; a failed repetition counts as beyond every number"
+                yield f"{failed} of {side.name} failed; {FAILED}"
+
+
+def left_told(side: Measurements) -> str:
+    """Return how many cells of a sweep are not stored, the values that no stored cell has, and how to continue."""
+    of = f" of {side.name}" if side.name else ""
+    cells = format_count(side.missing, f"cell{of} is", f"cells{of} are")
+    without = f", so that none has {few(side.unseen, separator=' or ')}" if side.unseen else ""
+    return f"{cells} not stored{without}; what follows holds for the others; continue with: {side.command}"
 
 
 def measure_compared(things: Sequence[Run | Sweep]) -> list[Measurements]:

@@ -9,16 +9,19 @@ import numpy as np
 from runner.base.dotted_keys import dotted, leaves
 from runner.base.machine import read_machine
 from runner.base.sanitize import one_line
-from runner.reporting.answers import EXPLAINED, HEADER, PAIRS, Answer, AskedComparison, ask
+from runner.reporting.answers import EXPLAINED, HEADER, PAIRS, Answer
+from runner.reporting.asked import AskedComparison, ask
 from runner.reporting.comparison.differences import Value, find_differences
 from runner.reporting.comparison.pairs import label_text, match
 from runner.reporting.comparison.sweeps import (
+    FAILED,
     NOISE_ALONE,
     POOLED,
     SweepComparison,
     compare_runs,
     counts_by_sign,
     format_count,
+    left_told,
     noise_alone,
     size_told,
 )
@@ -41,10 +44,9 @@ def level_lines(side: Measurements, axis: str, answers: Sequence[Answer], everyt
     """Yield the comparison of the levels of an axis: answers first; with `everything` all metrics and the method."""
     yield one_line(f"{side.folder}  {size_told(side)}; by {axis}")
     if side.missing:
-        left = format_count(side.missing, "cell is", "cells are")
-        yield one_line(f"{left} not stored; continue with: {side.command}")
+        yield one_line(left_told(side))
     if side.failed:
-        yield f"{format_count(side.failed, 'cell', 'cells')} failed; a failed repetition counts as beyond every number"
+        yield f"{format_count(side.failed, 'cell', 'cells')} failed; {FAILED}"
     along = [one for one in side.differences if axis in one.axes or not one.axes]
     if along:
         yield f"the levels of {axis} differ in more than {axis}; what follows may be due to any of these:"

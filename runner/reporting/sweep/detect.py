@@ -131,6 +131,6 @@ def _of_difference(one: Answer, share: float, repetitions: int) -> Needed:
         why = "integration error" if found.error == one.least else "2 %"
         return needed(None, reason=f"up to {quantity(one.least, one.unit, 2)} does not count: {why}")
     if pairs is None or ends is None:
-        return needed(None, reason="too few pairs have a value")
+        return needed(None, reason="pairs without a value, or too few of them")
     usable = int(np.isfinite(found.differences).sum()) / repetitions  # pairs of a repetition
     return needed(math.ceil(pairs / usable), (math.ceil(ends[0] / usable), math.ceil(ends[1] / usable)))

@@ -68,6 +68,16 @@ def test_the_answer_comes_first_and_every_metric_when_asked(cli, folder):
     assert "peak_torque_q1" not in short
 
 
+def test_an_interrupted_sweep_says_which_values_its_answer_lacks(cli, folder, tmp_path):
+    shutil.copytree(folder.parent.parent, tmp_path / "outputs")
+    copied = tmp_path / "outputs" / "sweeps" / folder.name
+    for run in (tmp_path / "outputs" / "runs").iterdir():
+        if "gravity: 9.7\n" in (run / "config.yaml").read_text():
+            shutil.rmtree(run)
+    out = cli("compare", copied, "--by", "controller").out
+    assert "not stored, so that none has gravity=9.7; what follows holds for the others; continue with" in out
+
+
 @pytest.mark.parametrize(
     ("arguments", "message"),
     [

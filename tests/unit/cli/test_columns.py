@@ -2,7 +2,8 @@
 
 import numpy as np
 
-from runner.reporting.answers import HEADER, AskedComparison, judge
+from runner.reporting.answers import HEADER, judge
+from runner.reporting.asked import AskedComparison
 from runner.reporting.comparison.sweeps import letter
 from runner.reporting.table import Number
 from runner.statistics import compare_paired

@@ -2,12 +2,15 @@
 
 import re
 from dataclasses import replace
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
 
 from runner.base.quantities import ROUNDING, share_of_larger
-from runner.reporting.answers import PAIRS, AskedComparison, judge
+from runner.reporting.answers import PAIRS, judge
+from runner.reporting.asked import AskedComparison
+from runner.reporting.conditions import conditions_of, describes
 from runner.statistics import compare_paired
 from runner.statistics.conclusion import ALPHA
 from tools.answers import CASES, false_answers, same_law, true_answers
@@ -192,6 +195,44 @@ def test_a_metric_without_a_value_in_some_draws_says_in_how_many():
     a, b = np.ones(N), np.where(np.arange(N) < 3, np.inf, 1.5)
     (answer,) = judge([AskedComparison("settling_time", "s", compare_paired(a, b))], [])
     assert "no value in 0 and 3 of 8 draws" in answer.sentence()
+
+
+def test_pairs_without_a_number_promise_nothing_and_have_no_end():
+    """One draw of eight in which one side fails the other way: no difference can be shown with 80 %."""
+    a, b = np.where(np.arange(N) == 0, np.inf, 1.0), np.where(np.arange(N) > 4, np.inf, 1.01)
+    (answer,) = judge([AskedComparison("settling_time", "s", compare_paired(a, b))], [])
+    text = answer.sentence()
+    assert "(unbounded, 8 pairs, no value in 1 and 3 of 8 draws)" in text
+    assert "can show" not in text
+    assert answer.pairs_that_tell is None
+    (beyond,) = judge([AskedComparison("settling_time", "s", compare_paired(np.ones(N), np.full(N, np.inf)))], [])
+    assert "by more than any number in pairs (beyond every number, 8 pairs" in beyond.sentence()
+
+
+def test_as_many_pairs_are_said_to_do_as_are_needed_in_so_many_comparisons():
+    nothing = asked(APART[:7] * np.array([1, -1, 1, -1, 1, -1, 1]))
+    answers = judge([nothing] * 8, ["rms_tracking_error"])  # 8 times 2 / 2^8 is above .05
+    assert {answer.fewest for answer in answers} == {9}
+    (condition,) = conditions_of([replace_at(answers[0])], "rms_tracking_error")
+    assert condition.word == "too few pairs (9 would do)"
+
+
+def test_conditions_without_draws_are_only_called_equal_if_they_are():
+    close = replace(compare_paired(np.ones(1), np.ones(1) + 0.005), error=0.0, exact=True)
+    (answer,) = judge([AskedComparison("rms_tracking_error", "m", close)], [])
+    (condition,) = conditions_of([replace_at(answer)], "rms_tracking_error")
+    assert condition.word == "less than 2 % apart, exact"
+
+
+def test_a_pooled_answer_without_a_sign_does_not_describe_a_condition_with_one():
+    none, larger = judge([asked(0.001 * APART)], [])[0], judge([asked(0.5 * APART)], [])[0]
+    assert describes(none, [none, none])
+    assert describes(larger, [none, larger])
+    assert not describes(none, [none, larger])
+
+
+def replace_at(answer):
+    return replace(answer, pairs=SimpleNamespace(at={"robot": "macro"}, first="A", second="B", axis=""))
 
 
 def test_the_comparisons_of_a_metric_are_one_family_whatever_else_is_asked():

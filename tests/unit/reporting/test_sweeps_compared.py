@@ -8,7 +8,7 @@ from support.sample_sides import LAWS, side
 
 from runner.base.errors import RunnerError
 from runner.base.quantities import ROUNDING
-from runner.reporting.answers import ask
+from runner.reporting.asked import ask
 from runner.reporting.comparison.pairs import match
 from runner.reporting.comparison.sweeps import compare_sweeps, counts_by_sign, noise_alone
 from runner.statistics import compare_paired
