@@ -2,7 +2,7 @@
 
 import warnings
 from collections.abc import Iterator, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Any
 
 import numpy as np
@@ -35,8 +35,8 @@ NOISE_ALONE = (
 )
 
 POOLED = (
-    "Over all cells each draw counts once, by the mean of its cells. This number is left out if the cells have "
-    f"different signs, or if the medians of either side differ by more than a factor of {ALIKE:g} between cells."
+    "Over all cells each draw counts once, by the mean of its cells. This number is left out if a cell has "
+    f"another answer, or if the medians of either side differ by more than a factor of {ALIKE:g} between cells."
 )
 
 FAILED = "a failed repetition counts as beyond every number; one that fails in both is in no pair and no median here"
@@ -177,6 +177,7 @@ def compare_runs(a: Measurements, b: Measurements, metrics: Sequence[str] = ()) 
         b: The second.
         metrics: Names of metrics; empty for the main ones.
     """
+    a, b = _with_lost(a, b), _with_lost(b, a)
     pairs = match(a, b)
     count = min(a.repetitions, b.repetitions)
     names = [name for name in metrics or main_metrics([a, b]) if name in a.values and name in b.values]
@@ -188,6 +189,14 @@ def compare_runs(a: Measurements, b: Measurements, metrics: Sequence[str] = ()) 
     if not names:
         return [], "not compared in pairs: no metric is in both"
     return answer([pairs], names, metrics), ""
+
+
+def _with_lost(side: Measurements, other: Measurements) -> Measurements:
+    """Return a run; one of which every repetition failed has the metrics of another, beyond every number."""
+    if side.values or not side.failed:
+        return side
+    lost = {name: np.full((len(side.hashes), side.repetitions), np.inf) for name in other.values}
+    return replace(side, values=lost, units=other.units)
 
 
 def answer(

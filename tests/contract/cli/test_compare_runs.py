@@ -177,3 +177,12 @@ def test_json_has_the_rows_of_the_function(cli, copy_run):
     assert (ending.code, ending.err) == (0, "")
     found = runner.compare(a, b, metrics=["rms_torque", "peak_torque"])
     assert json.loads(ending.out) == found.to_dict(orient="records")
+
+
+def test_a_run_that_failed_is_beyond_every_number_of_the_other(cli):
+    asked = ("robot=macro", "plant=rk4", "trajectory=quintic", "duration=1", "noise=thesis", "repetitions=6")
+    good = cli(*asked).folder
+    bad = cli(*asked, "controller.singularity_damping=0", "controller.period=0.06").folder
+    out = cli("compare", good, bad).out
+    assert "smaller with A than with B (never): by more than any number in pairs (beyond every number, 6 pairs" in out
+    assert "no metric is in both" not in out
