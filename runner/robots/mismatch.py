@@ -9,6 +9,7 @@ from pydantic import Field, NonNegativeFloat, PositiveFloat
 from runner.base.arrays import FloatArray
 from runner.base.errors import ConfigError, nearest
 from runner.base.lazy_modules import pin
+from runner.base.memory import Memory
 from runner.plugins.registry import KindConfig, Registry
 from runner.robots.drawn import DrawnModel
 from runner.robots.model import RobotModel
@@ -105,6 +106,7 @@ class MismatchConfig(StrictModel):
 
 _TERMS = "mass", "centre_of_mass", "inertia"
 _NO_ERROR = LinkMismatch()
+_MEMORY = Memory(128)  # for nominal robots of errors that are not drawn
 NONE = MismatchConfig(mass=1.0, centre_of_mass=1.0, length=1.0, gravity=1.0, payload=0.0, spread=0.0, link={})
 
 
@@ -167,8 +169,15 @@ def build(config: MismatchConfig, robot: Robot, generator: np.random.Generator) 
     """Return the nominal robot, with the mismatch applied to the model of the robot and of each stage."""
     if config == NONE:
         return robot
+    return _built(config, robot, generator) if config.varies else _MEMORY.recall(_built, config, robot, None)
+
+
+def _built(config: MismatchConfig, robot: Robot, generator: np.random.Generator | None) -> Robot:
+    """Return the nominal robot; without a generator, that of an error that is not drawn."""
     links = robot.model.link_names
-    factors = config.draw(links, [generator])[0] * config.factors(links)
+    factors = config.factors(links)
+    if generator is not None:
+        factors = config.draw(links, [generator])[0] * factors
 
     def change(model: RobotModel, joints: slice, bears_payload: bool) -> RobotModel:
         loaded = model.with_payload(config.payload, np.array(robot.payload_position)) if bears_payload else model
