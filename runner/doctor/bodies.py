@@ -66,16 +66,29 @@ def _check_joint(tree: UrdfTree, name: str) -> list[DoctorFinding]:
         joint.set("type", "revolute")
         limit.attrib.update(lower=f"-{_NONE}", upper=_NONE)
         findings.append(DoctorFinding("fixed", place, "continuous", "now revolute up to 1e6 rad: without limits"))
-    findings += _check_positions(place, joint, limit)
+    findings += _check_positions(tree, name, limit)
+    if not moves(joint):
+        return findings
     return findings + [finding for key in ("effort", "velocity") for finding in _check_limit(place, limit, key)]
 
 
-def _check_positions(place: str, joint: ET.Element, limit: ET.Element) -> list[DoctorFinding]:
+def _check_positions(tree: UrdfTree, name: str, limit: ET.Element) -> list[DoctorFinding]:
+    joint, place = tree.joints[name], f"joint '{name}'"
     lower, upper = number(limit, "lower"), number(limit, "upper")
     if lower < upper:
         return []
-    said = "no position limits" if math.isnan(lower) or math.isnan(upper) else f"limits from {lower:g} to {upper:g}"
-    if joint.get("type") == "prismatic":
+    unit = "m" if joint.get("type") == "prismatic" else "rad"
+    said = f"limits from {lower:g} to {upper:g} {unit}"
+    if lower > upper:
+        limit.attrib.update(lower=repr(upper), upper=repr(lower))
+        return [DoctorFinding("fixed", place, said, f"now exchanged: from {upper:g} to {lower:g} {unit}; check them")]
+    unfilled = lower == 0.0 and not number(limit, "effort") > 0.0
+    if lower == upper and not unfilled and abs(lower) < NO_LIMIT:
+        hold(tree, name, lower)
+        remedy = f"now a fixed joint at {lower:g} {unit}; if it moves, correct its limits"
+        return [DoctorFinding("fixed", place, f"{said}, which lock it", remedy)]
+    said = f"{said}, and no effort: not filled in" if unfilled else said if lower == upper else "no position limits"
+    if unit == "m":
         return [DoctorFinding("refused", place, f"it slides, with {said}", "give lower and upper, in m")]
     limit.attrib.update(lower=f"-{_NONE}", upper=_NONE)
     return [DoctorFinding("fixed", place, said, "now 1e6 rad to both sides: without limits")]
@@ -85,10 +98,16 @@ def _check_limit(place: str, limit: ET.Element, key: str) -> list[DoctorFinding]
     value = number(limit, key)
     if value > 0.0:
         return []
+    if value < 0.0:
+        allowed = "allowed: 0 or more, 1e6 for no limit"
+        return [DoctorFinding("refused", place, f"{key} limit {value:g}", allowed)]
     limit.set(key, _NONE)
     if math.isnan(value):
         return [DoctorFinding("note", place, f"no {key} limit", "give that of the data sheet, if it matters")]
-    return [DoctorFinding("fixed", place, f"{key} limit {value:g}, at which nothing moves", "now 1e6: without limit")]
+    effort = key == "effort"
+    meant = "nothing drives it" if effort else "it stands still under commands of position"
+    remedy = "the copy has 1e6, without limit" + ("; write 0 there for a joint without a drive" if effort else "")
+    return [DoctorFinding("fixed", place, f"{key} limit 0: in a run of this file {meant}", remedy)]
 
 
 def check_links(tree: UrdfTree) -> list[DoctorFinding]:
