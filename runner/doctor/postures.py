@@ -37,7 +37,8 @@ def check_gravity(model: RobotModel, postures: FloatArray) -> list[DoctorFinding
             )
     if not findings:
         share = largest / model.effort_limits
-        most = int(np.argmax(share if share.any() else largest))
+        load = share if share.any() else largest
+        most = int(np.argmax(load >= load.max() * (1.0 - 1e-6)))  # of equal ones the first
         unit = "N" if model.prismatic[most] else "N m"
         limit = f", {100.0 * share[most]:.2g} % of its effort limit" if share[most] else ", and has no effort limit"
         found = f"{largest[most]:.3g} {unit} in the worst posture found"

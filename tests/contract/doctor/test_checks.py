@@ -12,8 +12,6 @@ from runner.base.errors import RunnerError
 from runner.doctor import engines
 from runner.doctor.examination import examine
 from runner.doctor.finding import DoctorFinding, together
-from runner.robots.inertials import fix_inertia, impossible_inertia
-from runner.robots.tree import read_tree
 
 CLEAN = strangers.chain("arm", [("revolute", Z), ("revolute", Y), ("revolute", Y)])
 
@@ -150,19 +148,6 @@ def test_an_arm_without_mass_has_its_kinematics(examined, links, why):
     assert note.text.startswith(why)
     assert "give the links behind every joint <inertial>" in note.remedy
     assert not examination.arm.has_mass
-
-
-@pytest.mark.parametrize("moments", [(0.1, 0.1, 0.3), (0.2, -0.1, 0.2), (1.0, 2.0, 3.5)])
-def test_an_impossible_inertia_becomes_one_that_a_body_can_have(tmp_path, moments):
-    values = " ".join(f'{key}="{value}"' for key, value in zip(("ixx", "iyy", "izz"), moments, strict=True))
-    text = f'<robot name="x"><link name="a"><inertial><mass value="1"/><inertia {values} ixy="0.01" ixz="0" iyz="0"/>'
-    (tmp_path / "x.urdf").write_text(text + "</inertial></link></robot>")
-    link = read_tree(tmp_path / "x.urdf").links["a"]
-    assert impossible_inertia(link)
-    fix_inertia(link)
-    assert impossible_inertia(link) == []
-    fixed = [float(link.find("inertial/inertia").get(key)) for key in ("ixx", "iyy", "izz")]
-    assert np.abs(np.subtract(fixed, moments)).max() < 0.6 * max(moments)
 
 
 def test_what_moves_beside_the_way_is_held(examined):
