@@ -158,9 +158,10 @@ def describe_singular(model: RobotModel, postures: FloatArray) -> list[DoctorFin
             DoctorFinding("refused", "tip", text, "choose another by --tip, or add a link at the tool centre point")
         ]
     share = float((values[:, 0] > _CONDITION * smallest).mean())
+    slides = f", with slides counted as shares of the reach, {model.reach:.3g} m," if model.prismatic.any() else ""
     text = (
-        f"in {100.0 * share:.0f} % of all postures the Jacobian of the tip's position has a condition number above "
-        f"{_CONDITION:g}; the nearest to a singular one that was found is q = {np.round(worst, 2).tolist()}"
+        f"in {100.0 * share:.0f} % of all postures the Jacobian of the tip's position{slides} has a condition number "
+        f"above {_CONDITION:g}; the nearest to a singular one that was found is q = {np.round(worst, 2).tolist()}"
     )
     return [DoctorFinding("note", "singular postures", text, "keep paths away, or singularity_damping above 0")]
 

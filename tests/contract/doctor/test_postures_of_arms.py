@@ -1,11 +1,11 @@
-"""Largest gravity torques that the doctor finds, against closed forms."""
+"""What the doctor finds in the postures of an arm: largest gravity torques, and singular ones."""
 
 import numpy as np
 import pytest
 from support import strangers
 from support.strangers import Y, Z
 
-from runner.doctor.postures import check_gravity, find_largest_gravity
+from runner.doctor.postures import check_gravity, describe_singular, find_largest_gravity
 from runner.robots.model import STANDARD_GRAVITY, RobotModel
 
 LENGTH, MASS = 0.3, 2.0
@@ -64,3 +64,12 @@ def test_prismatic_joints_are_moved_to_the_end_that_needs_the_most():
     assert find_largest_gravity(model, samples(model, 5)) == pytest.approx(
         [STANDARD_GRAVITY * lever, STANDARD_GRAVITY * MASS], rel=1e-5
     )
+
+
+def test_the_scale_of_prismatic_joints_in_a_condition_number_is_told():
+    (of_turns,) = describe_singular(planar(2), samples(planar(2)))
+    assert "the Jacobian of the tip's position has a condition number above 10" in of_turns.text
+    model = RobotModel(strangers.MADE["crane"], "tip")
+    (of_slides,) = describe_singular(model, samples(model))
+    told = f"position, with slides counted as shares of the reach, {model.reach:.3g} m, has a condition number above 10"
+    assert told in of_slides.text
