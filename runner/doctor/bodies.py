@@ -9,7 +9,16 @@ import numpy as np
 
 from runner.base.sanitize import few, quoted
 from runner.doctor.finding import DoctorFinding
-from runner.robots.elements import NO_LIMIT, TENSOR, absurd_inertial, moves, number, wrong_places
+from runner.robots.elements import (
+    NO_LIMIT,
+    TENSOR,
+    absurd_inertial,
+    moves,
+    number,
+    wrong_friction,
+    wrong_mass,
+    wrong_places,
+)
 from runner.robots.inertials import fix_inertia, impossible_inertia, make_massless, place_of, principal_moments
 from runner.robots.joint_dynamics import hold, rest_position
 from runner.robots.tree import UrdfTree
@@ -17,6 +26,9 @@ from runner.robots.tree import UrdfTree
 _NONE = repr(NO_LIMIT)
 _NOT_FOUND = "not found"
 _DENSEST = 2e4  # kg/m^3, of metals
+_MOST_TURNS, _NO_DEGREES = 8.0 * math.pi, 1000.0  # rad: limits between them look like degrees
+_DEGREES = "degrees? Multiply the limits by pi/180"
+_LONGEST = 50.0  # m, of an arm
 _SMALLEST_PART = 0.3  # of the lengths of all links: the least size of a link for its density
 
 
@@ -69,6 +81,11 @@ def _check_joint(tree: UrdfTree, name: str) -> list[DoctorFinding]:
     findings += _check_positions(tree, name, limit)
     if not moves(joint):
         return findings
+    for friction in wrong_friction(joint):
+        findings.append(DoctorFinding("refused", place, *friction.split("; ")))
+    damping = number(joint.find("dynamics"), "damping")
+    if damping < 0.0:
+        findings.append(DoctorFinding("note", place, f"damping {damping:g}", "it counts as 0; allowed: 0 or more"))
     return findings + [finding for key in ("effort", "velocity") for finding in _check_limit(place, limit, key)]
 
 
@@ -125,8 +142,9 @@ def _check_link(tree: UrdfTree, name: str, link: ET.Element) -> list[DoctorFindi
     findings = _complete(place, link)
     mass = number(link.find("inertial/mass"), "value")
     moments = [number(link.find("inertial/inertia"), key) for key in TENSOR]
-    if not 0.0 <= mass < math.inf:
-        return [DoctorFinding("refused", place, f"mass {mass:g} kg", "allowed: 0 or more")]
+    for fault in wrong_mass(link):
+        text, _, remedy = fault.partition("; ")
+        return [DoctorFinding("refused", place, text, remedy)]
     if not all(map(math.isfinite, moments)):
         return [
             DoctorFinding(
@@ -160,10 +178,19 @@ def _complete(place: str, link: ET.Element) -> list[DoctorFinding]:
 
 
 def check_units(tree: UrdfTree) -> list[DoctorFinding]:
-    """Return links whose inertia or mass seems to be in other units than kg m^2 and kg."""
+    """Return links and joints whose values seem to be in other units than kg m^2, kg, m and rad."""
     places = {name: float(np.linalg.norm(place_of(joint).translation)) for name, joint in tree.joints.items()}
     whole = sum(places.values())
-    findings = []
+    findings = [
+        DoctorFinding(
+            "note", f"joint '{name}'", f"a limit of {limit:g} rad, {limit / (2.0 * math.pi):.0f} turns", _DEGREES
+        )
+        for name, joint in tree.joints.items()
+        if joint.get("type") == "revolute" and _MOST_TURNS < (limit := _largest_limit(joint)) < _NO_DEGREES
+    ]
+    if _LONGEST < whole < math.inf:
+        text = f"the joints lie {whole:.4g} m apart in sum"
+        findings.append(DoctorFinding("note", "lengths", text, "mm? Divide all lengths by 1000"))
     for name, link in tree.links.items():
         mass = number(link.find("inertial/mass"), "value")
         inertia = link.find("inertial/inertia")
@@ -182,6 +209,13 @@ def check_units(tree: UrdfTree) -> list[DoctorFinding]:
             text = f"a mass of {mass:g} kg on a link of {size:.2g} m, denser than metals"
             findings.append(DoctorFinding("note", f"link '{name}'", text, "g? Divide the mass by 1000"))
     return findings
+
+
+def _largest_limit(joint: ET.Element) -> float:
+    """Return the largest position limit of a joint, in rad; 0 without limits that can be read."""
+    limit = joint.find("limit")
+    values = [abs(number(limit, key)) for key in ("lower", "upper")]
+    return max(values) if all(map(math.isfinite, values)) else 0.0
 
 
 def check_placements(tree: UrdfTree) -> list[DoctorFinding]:

@@ -65,6 +65,8 @@ EQUAL, FILLED = 'lower="-2.8" upper="2.8" effort="2000"', 'lower="0.5" upper="0.
     ("old", "new", "place", "said"),
     [
         ('mass value="2.0"', 'mass value="-2.0"', "link 'l1'", "refused .*: mass -2 kg; allowed: 0 or more"),
+        ('mass value="2.0"', 'mass value="4,0"', "link 'l1'", "refused .*: <mass value='4,0'>; allowed: a number of 0"),
+        ('mass value="2.0"', "mass", "link 'l1'", "refused .*: a <mass> without value; write it, in kg"),
         ('type="revolute"', 'type="floating"', "joint 'q1'", "refused .* is floating; allowed: revolute, prismatic or"),
         ('type="revolute"', 'type="continuous"', "joint 'q1'", "fixed .* continuous; now revolute up to 1e6 rad"),
         (
@@ -82,6 +84,18 @@ EQUAL, FILLED = 'lower="-2.8" upper="2.8" effort="2000"', 'lower="0.5" upper="0.
         ('lower="-2.8" upper="2.8"', "", "joint 'q1'", f"fixed .* no position limits; {TWICE}"),
         ('xyz="0 0 0.3"/><axis', 'xyz="0 0 0,3"/><axis', "joint 'q2'", "xyz='0 0 0,3'>; allowed: three numbers"),
         (f'axis xyz="{Z}"', 'axis xyz="0 0 0"', "joint 'q1'", "refused .* an axis of length 0; give it a direction"),
+        (
+            "</joint>",
+            '<dynamics friction="-1.5"/></joint>',
+            "joint 'q1'",
+            "refused .*: <dynamics friction='-1.5'>; all",
+        ),
+        (
+            "</joint>",
+            '<dynamics damping="-2.5"/></joint>',
+            "joint 'q1'",
+            "note .* damping -2.5; it counts as 0; allowed",
+        ),
         (' iyz="0"', "", "link 'l1'", "fixed .* no inertia iyz; now 0"),
     ],
 )
@@ -338,6 +352,25 @@ def test_inertias_and_masses_in_other_units_are_named(examined):
         f"note    link 'l2': a mass of 2000 kg on a link of 0.3 m, {dense}",
         f"note    link 'l3': a mass of 2000 kg on a link of 0.25 m, {dense}",
     ]
+
+
+@pytest.mark.parametrize(("limit", "named"), [(25.1, False), (25.2, True), (999.0, True), (1000.0, False)])
+def test_limits_that_look_like_degrees_are_named(examined, limit, named):
+    notes = [str(each) for each in examined(changed('upper="2.8"', f'upper="{limit}"')).findings]
+    turns = f"a limit of {limit:g} rad, {limit / 6.2832:.0f} turns"
+    said = f"note    joint 'q1': {turns}; degrees? Multiply the limits by pi/180"
+    assert (said in notes) == named
+    assert any("degrees" in note for note in notes) == named
+
+
+@pytest.mark.parametrize(("length", "named"), [(24.0, False), (25.0, True)])
+def test_lengths_that_look_like_millimetres_are_named(examined, length, named):
+    text = strangers.chain("arm", [("revolute", Z), ("revolute", Y), ("revolute", Y)], length=length, mass=2e8)
+    notes = [str(each) for each in examined(text).findings if each.place == "lengths"]
+    whole = 2.0 * length + 0.065**0.5
+    assert (
+        notes == [f"note    lengths: the joints lie {whole:.4g} m apart in sum; mm? Divide all lengths by 1000"] * named
+    )
 
 
 def test_the_effect_of_a_corrected_inertia_is_told(examined):

@@ -90,6 +90,25 @@ def test_a_single_joint_behind_the_tip_counts_as_one_of_the_arm(tmp_path):
     assert not model.tip_jacobian(np.zeros(3))[:, 2].any()
 
 
+@pytest.mark.parametrize(
+    ("old", "new", "problem"),
+    [
+        (
+            "</joint>",
+            '<dynamics friction="-1.5"/></joint>',
+            r"joint 'q1' in .* has <dynamics friction='-1.5'>; allowed",
+        ),
+        ('mass value="2.0"', 'mass value="4,0"', r"link 'l1' in .* has <mass value='4,0'>; allowed: a number of 0 or"),
+        ('mass value="2.0"', 'mass value="-4"', r"link 'l1' in .* has mass -4 kg; allowed: 0 or more"),
+    ],
+)
+def test_values_of_a_file_that_are_wrong_are_quoted(tmp_path, old, new, problem):
+    text = strangers.chain("arm", [("revolute", strangers.X), ("revolute", strangers.Y)])
+    (tmp_path / "arm.urdf").write_text(text.replace(old, new, 1))
+    with pytest.raises(ConfigError, match=problem):
+        read_urdf(tmp_path / "arm.urdf", {})
+
+
 def test_a_mimicking_joint_is_refused(tmp_path):
     text = strangers.chain("arm", [("revolute", strangers.X), ("revolute", strangers.Y)])
     text = text.replace('<child link="l2"/>', '<child link="l2"/><mimic joint="q1"/>')
