@@ -9,7 +9,16 @@ import numpy as np
 
 from runner.base.sanitize import few, quoted
 from runner.doctor.finding import DoctorFinding
-from runner.robots.elements import NO_LIMIT, TENSOR, absurd_inertial, moves, number, wrong_places
+from runner.robots.elements import (
+    NO_LIMIT,
+    TENSOR,
+    absurd_inertial,
+    moves,
+    number,
+    wrong_friction,
+    wrong_mass,
+    wrong_places,
+)
 from runner.robots.inertials import fix_inertia, impossible_inertia, make_massless, place_of, principal_moments
 from runner.robots.joint_dynamics import hold, rest_position
 from runner.robots.tree import UrdfTree
@@ -17,6 +26,9 @@ from runner.robots.tree import UrdfTree
 _NONE = repr(NO_LIMIT)
 _NOT_FOUND = "not found"
 _DENSEST = 2e4  # kg/m^3, of metals
+_MOST_TURNS, _NO_DEGREES = 8.0 * math.pi, 1000.0  # rad: limits between them look like degrees
+_DEGREES = "degrees? Multiply the limits by pi/180"
+_LONGEST = 50.0  # m, of an arm
 _SMALLEST_PART = 0.3  # of the lengths of all links: the least size of a link for its density
 
 
@@ -66,16 +78,34 @@ def _check_joint(tree: UrdfTree, name: str) -> list[DoctorFinding]:
         joint.set("type", "revolute")
         limit.attrib.update(lower=f"-{_NONE}", upper=_NONE)
         findings.append(DoctorFinding("fixed", place, "continuous", "now revolute up to 1e6 rad: without limits"))
-    findings += _check_positions(place, joint, limit)
+    findings += _check_positions(tree, name, limit)
+    if not moves(joint):
+        return findings
+    for friction in wrong_friction(joint):
+        findings.append(DoctorFinding("refused", place, *friction.split("; ")))
+    damping = number(joint.find("dynamics"), "damping")
+    if damping < 0.0:
+        findings.append(DoctorFinding("note", place, f"damping {damping:g}", "it counts as 0; allowed: 0 or more"))
     return findings + [finding for key in ("effort", "velocity") for finding in _check_limit(place, limit, key)]
 
 
-def _check_positions(place: str, joint: ET.Element, limit: ET.Element) -> list[DoctorFinding]:
+def _check_positions(tree: UrdfTree, name: str, limit: ET.Element) -> list[DoctorFinding]:
+    joint, place = tree.joints[name], f"joint '{name}'"
     lower, upper = number(limit, "lower"), number(limit, "upper")
     if lower < upper:
         return []
-    said = "no position limits" if math.isnan(lower) or math.isnan(upper) else f"limits from {lower:g} to {upper:g}"
-    if joint.get("type") == "prismatic":
+    unit = "m" if joint.get("type") == "prismatic" else "rad"
+    said = f"limits from {lower:g} to {upper:g} {unit}"
+    if lower > upper:
+        limit.attrib.update(lower=repr(upper), upper=repr(lower))
+        return [DoctorFinding("fixed", place, said, f"now exchanged: from {upper:g} to {lower:g} {unit}; check them")]
+    unfilled = lower == 0.0 and not number(limit, "effort") > 0.0
+    if lower == upper and not unfilled and abs(lower) < NO_LIMIT:
+        hold(tree, name, lower)
+        remedy = f"now a fixed joint at {lower:g} {unit}; if it moves, correct its limits"
+        return [DoctorFinding("fixed", place, f"{said}, which lock it", remedy)]
+    said = f"{said}, and no effort: not filled in" if unfilled else said if lower == upper else "no position limits"
+    if unit == "m":
         return [DoctorFinding("refused", place, f"it slides, with {said}", "give lower and upper, in m")]
     limit.attrib.update(lower=f"-{_NONE}", upper=_NONE)
     return [DoctorFinding("fixed", place, said, "now 1e6 rad to both sides: without limits")]
@@ -85,10 +115,16 @@ def _check_limit(place: str, limit: ET.Element, key: str) -> list[DoctorFinding]
     value = number(limit, key)
     if value > 0.0:
         return []
+    if value < 0.0:
+        allowed = "allowed: 0 or more, 1e6 for no limit"
+        return [DoctorFinding("refused", place, f"{key} limit {value:g}", allowed)]
     limit.set(key, _NONE)
     if math.isnan(value):
         return [DoctorFinding("note", place, f"no {key} limit", "give that of the data sheet, if it matters")]
-    return [DoctorFinding("fixed", place, f"{key} limit {value:g}, at which nothing moves", "now 1e6: without limit")]
+    effort = key == "effort"
+    meant = "nothing drives it" if effort else "it stands still under commands of position"
+    remedy = "the copy has 1e6, without limit" + ("; write 0 there for a joint without a drive" if effort else "")
+    return [DoctorFinding("fixed", place, f"{key} limit 0: in a run of this file {meant}", remedy)]
 
 
 def check_links(tree: UrdfTree) -> list[DoctorFinding]:
@@ -106,8 +142,9 @@ def _check_link(tree: UrdfTree, name: str, link: ET.Element) -> list[DoctorFindi
     findings = _complete(place, link)
     mass = number(link.find("inertial/mass"), "value")
     moments = [number(link.find("inertial/inertia"), key) for key in TENSOR]
-    if not 0.0 <= mass < math.inf:
-        return [DoctorFinding("refused", place, f"mass {mass:g} kg", "allowed: 0 or more")]
+    for fault in wrong_mass(link):
+        text, _, remedy = fault.partition("; ")
+        return [DoctorFinding("refused", place, text, remedy)]
     if not all(map(math.isfinite, moments)):
         return [
             DoctorFinding(
@@ -141,10 +178,19 @@ def _complete(place: str, link: ET.Element) -> list[DoctorFinding]:
 
 
 def check_units(tree: UrdfTree) -> list[DoctorFinding]:
-    """Return links whose inertia or mass seems to be in other units than kg m^2 and kg."""
+    """Return links and joints whose values seem to be in other units than kg m^2, kg, m and rad."""
     places = {name: float(np.linalg.norm(place_of(joint).translation)) for name, joint in tree.joints.items()}
     whole = sum(places.values())
-    findings = []
+    findings = [
+        DoctorFinding(
+            "note", f"joint '{name}'", f"a limit of {limit:g} rad, {limit / (2.0 * math.pi):.0f} turns", _DEGREES
+        )
+        for name, joint in tree.joints.items()
+        if joint.get("type") == "revolute" and _MOST_TURNS < (limit := _largest_limit(joint)) < _NO_DEGREES
+    ]
+    if _LONGEST < whole < math.inf:
+        text = f"the joints lie {whole:.4g} m apart in sum"
+        findings.append(DoctorFinding("note", "lengths", text, "mm? Divide all lengths by 1000"))
     for name, link in tree.links.items():
         mass = number(link.find("inertial/mass"), "value")
         inertia = link.find("inertial/inertia")
@@ -163,6 +209,13 @@ def check_units(tree: UrdfTree) -> list[DoctorFinding]:
             text = f"a mass of {mass:g} kg on a link of {size:.2g} m, denser than metals"
             findings.append(DoctorFinding("note", f"link '{name}'", text, "g? Divide the mass by 1000"))
     return findings
+
+
+def _largest_limit(joint: ET.Element) -> float:
+    """Return the largest position limit of a joint, in rad; 0 without limits that can be read."""
+    limit = joint.find("limit")
+    values = [abs(number(limit, key)) for key in ("lower", "upper")]
+    return max(values) if all(map(math.isfinite, values)) else 0.0
 
 
 def check_placements(tree: UrdfTree) -> list[DoctorFinding]:

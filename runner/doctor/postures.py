@@ -1,5 +1,7 @@
 """Checks of an arm's configurations: gravity, mass matrix, tasks, singularities and workspace."""
 
+import math
+
 import numpy as np
 
 from runner.base.arrays import FloatArray
@@ -14,30 +16,80 @@ from runner.robots.workspace import analyse
 _REGULAR = 1e-9  # smallest eigenvalue of a mass matrix with a diagonal of 1
 _NO_INERTIA = "links behind a joint have mass, but no inertia about its axis"
 _CONDITION = 10.0  # of a Jacobian, above which a posture counts as nearly singular
+_STARTS, _SMALL = 3, 12  # best postures for a search of gravity torques; of arms with more joints, one
+_SWEEPS, _EVALUATIONS = 10, 30_000  # of that search, at most
 SINGULAR = 0.1  # of the reach: the smallest singular value below which controllers damp
 
 
 def check_gravity(model: RobotModel, postures: FloatArray) -> list[DoctorFinding]:
-    """Return the joints that cannot support the arm's weight in each of some postures, shape (N, nq)."""
-    largest = np.abs([model.gravity_torque(q) for q in postures]).max(axis=0)
+    """Return the joints whose effort limit is below the largest gravity torque found; see find_largest_gravity."""
+    largest = find_largest_gravity(model, postures)
     findings = []
     for name, need, effort, unit in zip(
         model.joint_names, largest, model.effort_limits, model.joint_units, strict=True
     ):
         torque = "N" if unit == "m" else "N m"
         if need > effort:
-            text = f"gravity asks for up to {need:.3g} {torque}, and its effort limit is {effort:.3g} {torque}"
+            asked = f"gravity asks for {need:.3g} {torque} in the worst posture found"
+            text = f"{asked}, and its effort limit is {effort:.3g} {torque}"
             findings.append(
                 DoctorFinding("note", f"joint '{name}'", text, "check masses and effort; or keep it upright")
             )
     if not findings:
         share = largest / model.effort_limits
-        most = int(np.argmax(share if share.any() else largest))
+        load = share if share.any() else largest
+        most = int(np.argmax(load >= load.max() * (1.0 - 1e-6)))  # of equal ones the first
         unit = "N" if model.prismatic[most] else "N m"
         limit = f", {100.0 * share[most]:.2g} % of its effort limit" if share[most] else ", and has no effort limit"
-        text = f"joint '{model.joint_names[most]}' supports most: up to {largest[most]:.3g} {unit}{limit}"
+        found = f"{largest[most]:.3g} {unit} in the worst posture found"
+        text = f"joint '{model.joint_names[most]}' supports most: {found}{limit}"
         findings.append(DoctorFinding("note", "gravity", text))
     return findings
+
+
+def find_largest_gravity(model: RobotModel, postures: FloatArray) -> FloatArray:
+    """Return the largest gravity torque of each joint that a search within the usual ranges finds, shape (nq,), in N m.
+
+    For each joint, the search starts at zero, in the middle and at those of some postures, shape (N, nq), in which the
+    joint supports most. It moves one joint after the other to its best position.
+    """
+    (lower, upper), torques = model.usual_range, np.abs([model.gravity_torque(q) for q in postures])
+    best = _STARTS if model.nq <= _SMALL else 1
+    sweeps = max(1, min(_SWEEPS, _EVALUATIONS // (2 * (best + 2) * model.nq**2)))
+    largest = torques.max(axis=0)
+    for joint in range(model.nq):
+        chosen = postures[np.argsort(-torques[:, joint], kind="stable")[:best]]
+        starts = [*chosen, np.clip(np.zeros(model.nq), lower, upper), (lower + upper) / 2.0]
+        found = [_climb(model, joint, np.array(start), sweeps) for start in starts]
+        largest[joint] = max(largest[joint], *found)
+    return np.asarray(largest)
+
+
+def _climb(model: RobotModel, joint: int, q: FloatArray, sweeps: int) -> float:
+    """Return the largest gravity torque of a joint near a posture, shape (nq,), which is changed; in N m.
+
+    Along one joint the torque is exactly a constant and a sinusoid, or linear for a prismatic joint.
+    """
+
+    def torque(mover: int, position: float) -> float:
+        q[mover] = position
+        return float(model.gravity_torque(q)[joint])
+
+    value = abs(torque(0, q[0]))
+    for _ in range(sweeps):
+        before = value
+        for mover, (low, high) in enumerate(model.usual_range.T.tolist()):
+            start = float(q[mover])
+            places = [start, low, high]
+            if not model.prismatic[mover]:
+                here, across, opposite = (torque(mover, start + turn * np.pi / 2.0) for turn in range(3))
+                top = start + math.atan2(across - (here + opposite) / 2.0, (here - opposite) / 2.0)
+                inner = [low + (place - low) % (2.0 * np.pi) for place in (top, top + np.pi)]
+                places += [place for place in inner if place <= high]
+            value, q[mover] = max((abs(torque(mover, place)), place) for place in places)
+        if value <= before * (1.0 + 1e-6):
+            break
+    return value
 
 
 def check_mass_matrix(tree: UrdfTree, model: RobotModel, postures: FloatArray) -> list[DoctorFinding]:
@@ -106,9 +158,10 @@ def describe_singular(model: RobotModel, postures: FloatArray) -> list[DoctorFin
             DoctorFinding("refused", "tip", text, "choose another by --tip, or add a link at the tool centre point")
         ]
     share = float((values[:, 0] > _CONDITION * smallest).mean())
+    slides = f", with slides counted as shares of the reach, {model.reach:.3g} m," if model.prismatic.any() else ""
     text = (
-        f"in {100.0 * share:.0f} % of all postures the Jacobian of the tip's position has a condition number above "
-        f"{_CONDITION:g}; the nearest to a singular one that was found is q = {np.round(worst, 2).tolist()}"
+        f"in {100.0 * share:.0f} % of all postures the Jacobian of the tip's position{slides} has a condition number "
+        f"above {_CONDITION:g}; the nearest to a singular one that was found is q = {np.round(worst, 2).tolist()}"
     )
     return [DoctorFinding("note", "singular postures", text, "keep paths away, or singularity_damping above 0")]
 

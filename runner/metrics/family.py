@@ -68,6 +68,10 @@ def _evaluate_family(
         if not any(f"_{known}_" in f"_{name}_" for known in family.UNITS):
             notices.append(f"metric {name}: {family.__name__}.UNITS names no unit for it; it is left out")
             continue
+        owner = metric_units.owner_of(name)
+        if owner is not family and owner is not None:
+            notices.append(f"metric {name}: {family.__name__} gave a metric of {owner.__name__}; it is left out")
+            continue
         fault = None if value is None else find_fault(value, ())
         if fault:
             notices.append(f"metric {name}: {place(family.evaluate)} gave {fault}")

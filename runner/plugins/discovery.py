@@ -26,6 +26,7 @@ GROUPS = (
 )  # fmt: skip
 """Groups in which a part can be added; runs do not contain a section of a report."""
 
+_VALUES = {"false", "inf", "nan", "null", "true"}  # that a command line takes for something else than a name
 _VARIABLE = "RUNNER_PLUGINS"  # one part a line, with absolute paths of files; worker processes inherit it
 
 
@@ -46,7 +47,9 @@ def use_plugins(given: Sequence[str]) -> None:
     for text in given:
         group, _, place = text.partition("=")
         module, function = _split(place)
-        if group not in GROUPS or not module:
+        if group in GROUPS and not module:
+            raise RunnerError(f"--plugin {text}: must be GROUP=MODULE, as in {group}=mine/part.py")
+        if group not in GROUPS:
             raise RunnerError(
                 f"--plugin {text}: must be GROUP=MODULE, as in controller=mine/spring.py{nearest(group, GROUPS)}; "
                 f"groups: {', '.join(GROUPS)}"
@@ -57,6 +60,8 @@ def use_plugins(given: Sequence[str]) -> None:
             module = str(Path(module).resolve())
         line = f"{group}={module}{function}"
         point = entry_point(line)
+        if point.name.lower() in _VALUES:
+            raise RunnerError(f"--plugin {text}: Hydra reads {group}={point.name} as a value, not as a name; rename it")
         _check_found(text, point.module, module)
         if function:
             _check_function(text, point)

@@ -23,7 +23,7 @@ def added_families() -> list[ModuleType]:
     """Return the modules of the user-supplied families of metrics.
 
     Raises:
-        ConfigError: if a module cannot be imported, or has no UNITS or no `evaluate`.
+        ConfigError: if a module cannot be imported, has no UNITS or no `evaluate`, or names a metric of another family.
     """
     modules = METRICS.added()
     for module in modules:
@@ -32,7 +32,30 @@ def added_families() -> list[ModuleType]:
             raise ConfigError(
                 f"metric {name.rpartition('.')[2]}: module {name} needs UNITS, a unit for each name, and evaluate"
             )
+    if problems := _taken_names(modules):
+        raise ConfigError(problems)
     return modules
+
+
+def owner_of(name: str) -> ModuleType | None:
+    """Return the family that measures a metric, by the longest known metric that its name contains; None if unknown."""
+    owners = {known: family for family in families() for known in family.UNITS}
+    return owners.get(_base(name, owners))
+
+
+def _taken_names(modules: list[ModuleType]) -> list[str]:
+    """Return messages about names of user-supplied metrics that are, or contain, a metric of another family."""
+    everyone, problems = [*METRICS.built_in(), *modules], []
+    for module in modules:
+        others = {known: family for family in everyone if family is not module for known in family.UNITS}
+        for name in module.UNITS:
+            taken = _base(name, others)
+            if taken in others:
+                means = "is a metric" if taken == name else f"contains '{taken}', a metric"
+                problems.append(
+                    f"metric {name}: in UNITS of {module.__name__}, it {means} of {others[taken].__name__}; rename it"
+                )
+    return problems
 
 
 def units() -> dict[str, str]:

@@ -11,7 +11,16 @@ from typing import TYPE_CHECKING
 from runner.base.errors import ConfigError, nearest
 from runner.base.paths import check_inside, robots_dir
 from runner.robots.canonical import write_text
-from runner.robots.elements import TENSOR, absurd_inertial, moves, number, wrong_limits, wrong_places
+from runner.robots.elements import (
+    TENSOR,
+    absurd_inertial,
+    moves,
+    number,
+    wrong_friction,
+    wrong_limits,
+    wrong_mass,
+    wrong_places,
+)
 from runner.robots.inertials import (
     Payload,
     add_payload,
@@ -176,7 +185,8 @@ def _check_numbers(path: Path, tree: UrdfTree, from_set: Mapping[str, str]) -> l
         problems += [f"robot.urdf: link '{name}' in {path} has {bad}" for bad in places]
         problems += [] if places else [f"{whence} {bad}" for bad in _bad_inertial(link)]
     for name, joint in tree.joints.items():
-        wrong = [*(f"{text}; {remedy}" for text, remedy in wrong_places(joint)), *wrong_limits(joint)]
+        places = [f"{text}; {remedy}" for text, remedy in wrong_places(joint)]
+        wrong = [*places, *wrong_limits(joint), *wrong_friction(joint)]
         problems += [f"robot.urdf: joint '{name}' in {path} has {bad}" for bad in wrong]
     return problems
 
@@ -190,8 +200,7 @@ def _bad_inertial(link: ET.Element) -> list[str]:
         return []  # a massless frame
     if link.find("inertial/mass") is None:
         return ["an <inertial> without <mass>: write its mass, in kg"]
-    mass = [] if 0.0 <= _mass(link) < math.inf else [f"mass {_mass(link):g} kg; allowed: 0 or more"]
-    return [*mass, *absurd_inertial(link)] or _bad_inertia(link)
+    return [*wrong_mass(link), *absurd_inertial(link)] or _bad_inertia(link)
 
 
 def _bad_inertia(link: ET.Element) -> list[str]:

@@ -112,6 +112,27 @@ def wrong_limits(joint: ET.Element) -> Iterator[str]:
             yield f"{key} limit {number(limit, key):g}; allowed: 0 or more"
 
 
+def wrong_friction(joint: ET.Element) -> Iterator[str]:
+    """Yield a message about a negative friction of a moving joint, which Pinocchio does not read."""
+    value = number(joint.find("dynamics"), "friction")
+    if moves(joint) and value < 0.0:
+        yield f"<dynamics friction={quoted(f'{value:g}')}>; allowed: 0 or more"
+
+
+def wrong_mass(link: ET.Element) -> Iterator[str]:
+    """Yield a message about a mass that is negative or not a finite number."""
+    element = link.find("inertial/mass")
+    text, mass = None if element is None else element.get("value"), number(element, "value")
+    if element is None or 0.0 <= mass < math.inf:
+        return
+    if text is None:
+        yield "a <mass> without value; write it, in kg"
+    elif math.isfinite(mass):
+        yield f"mass {mass:g} kg; allowed: 0 or more"
+    else:
+        yield f"<mass value={quoted(text)}>; allowed: a number of 0 or more, in kg"
+
+
 def _is_vector(text: str) -> bool:
     values = numbers(text)
     return len(values) == 3 and all(abs(value) <= LARGEST for value in values)

@@ -193,18 +193,31 @@ def turn_to_principal_axes(link: ET.Element) -> None:
 
 
 def fix_inertia(link: ET.Element) -> None:
-    """Replace the inertia of a link by the nearest one that is possible for a rigid body.
-
-    The second moments of the mass along the principal axes, sum m x x^T = tr(I)/2 - I, cannot be negative. Each one
-    below a thousandth of the largest is set to this value.
-    """
-    tensor = _tensor(link)
-    spread, axes = np.linalg.eigh(0.5 * np.trace(tensor) * np.eye(3) - tensor)
-    spread = np.maximum(spread, 1e-3 * max(float(spread[2]), 0.0))
-    fixed = axes @ np.diag(spread.sum() - spread) @ axes.T
+    """Replace the inertia of a link by the nearest one that is possible for a rigid body; see nearest_moments."""
+    moments, axes = np.linalg.eigh(_tensor(link))
+    fixed = axes @ np.diag(nearest_moments(moments)) @ axes.T
     inertia = link.find("inertial/inertia")
     if inertia is not None:
         inertia.attrib.update({key: repr(float(fixed[place])) for key, place in _UPPER.items()})
+
+
+def nearest_moments(moments: np.ndarray) -> np.ndarray:
+    """Return the principal moments of a rigid body that are nearest to given ones in the sum of squared differences.
+
+    None of a body is above the sum of the others. The sum stays above by a ten-thousandth of the largest, so that
+    rounding does not matter.
+
+    Args:
+        moments: Principal moments, shape (3,), ascending, in kg m^2.
+    """
+    apart = _APART * max(float(moments[2]), 0.0)
+    a, b, c = moments - apart  # the allowed set is a cone; this moves its tip to zero
+    excess = max(c - a - b, 0.0) / 3.0
+    if a + c - excess >= b:  # only the largest moment is at its bound
+        nearest = np.array([a + excess, b + excess, c - excess])
+    else:  # a rod along the first axis
+        nearest = max((b + c) / 2.0, 0.0) * np.array([0.0, 1.0, 1.0])
+    return np.asarray(nearest + apart)
 
 
 def make_massless(link: ET.Element) -> None:
@@ -213,6 +226,7 @@ def make_massless(link: ET.Element) -> None:
 
 
 _ROUNDING = 1e-6  # of the largest moment, because files have few digits
+_APART = 1e-4  # of the largest moment: distance of a corrected inertia from impossible ones
 _UPPER = dict(zip(TENSOR, itertools.combinations_with_replacement(range(3), 2), strict=True))
 
 

@@ -90,7 +90,7 @@ def rest_position(tree: UrdfTree, name: str, followers: tuple[str, ...] = ()) ->
         return (1.0 if np.isnan(factor) else factor) * led + (0.0 if np.isnan(offset) else offset)
     position = tree.home.get(name, 0.0)
     lower, upper = number(limit, "lower"), number(limit, "upper")
-    if joint.get("type") in ("revolute", "prismatic") and lower < upper:
+    if joint.get("type") in ("revolute", "prismatic") and lower <= upper:
         position = float(np.clip(position, lower, upper))
     return position
 

@@ -9,7 +9,7 @@ import numpy as np
 from runner.base.arrays import FloatArray
 from runner.base.errors import ConfigError, RunnerError
 from runner.plugins.features import Features, read_features
-from runner.plugins.guard import Asked, Guard, Method, checked, describe_fault, find_fault, read_only
+from runner.plugins.guard import Asked, Guard, Method, checked, describe_fault, find_fault, place, read_only
 from runner.plugins.registry import KindConfig, Registry
 from runner.trajectories.trajectory import OfTip, Trajectory
 
@@ -59,6 +59,9 @@ class _ByRun(Method):
         return by_run
 
 
+_SAMPLES, _PROBES = 1001, 40  # of a user-supplied motion before a run
+_CLOSE = 1e-6  # m, rad
+_DERIVATIVES = (("velocity", 0.1), ("acceleration", 0.3))  # and the relative difference that is a fault
 _GUARD = Guard(
     "trajectory",
     OfTip,
@@ -91,7 +94,11 @@ def guard_trajectory(trajectory: Any, *_: object) -> Any:
                 setattr(guarded, name, None if point is None else read_only(np.array(point, dtype=float)))
         guarded.tracked = bool(trajectory.tracked)
         if has_times:
-            guarded.distance_to_path(guarded.sample(np.linspace(0.0, trajectory.duration, 1001))[:, 0])
+            motion = guarded.sample(np.linspace(0.0, trajectory.duration, _SAMPLES))
+            guarded.distance_to_path(motion[:, 0])
+            if not problems and guarded.tracked and trajectory.duration > 0.0:
+                fault = _find_jump(motion, trajectory.duration, "m") or _find_contradiction(guarded, "m")
+                problems += [f"{place(trajectory.sample)} gave {fault}"] if fault else []
     except RunnerError:
         raise
     except Exception as error:
@@ -109,7 +116,7 @@ def guard_joint_motion(motion: Any, shape: tuple[int, ...]) -> Any:
         shape: Shape of joint positions, (nq,).
 
     Raises:
-        ConfigError: if one of these is invalid.
+        ConfigError: if one of these is invalid, or if the samples contradict it or each other.
     """
     rule = Method(lambda found, asked, times: checked(found, (len(times), 3, *shape), asked))
     guarded, problems = Guard("trajectory", sample=rule)(motion), list[str]()
@@ -128,7 +135,57 @@ def guard_joint_motion(motion: Any, shape: tuple[int, ...]) -> Any:
     if problems:
         raise ConfigError(f"trajectory: {type(motion).__name__}: {problem}" for problem in problems)
     guarded.start, guarded.duration, guarded.samples = read_only(np.array(start, dtype=float)), duration, samples
+    try:
+        fault = _find_contradiction(guarded, "rad")
+        problem = f"{place(motion.sample)} gave {fault}" if fault else None
+    except Exception as error:
+        problem = describe_fault(error)
+    if problem:
+        raise ConfigError(f"trajectory: {type(motion).__name__}: {problem}")
     return guarded
+
+
+def _find_jump(motion: FloatArray, duration: float, unit: str) -> str | None:
+    """Return a message about a position that jumps between evenly spaced samples, shape (T, 3, k); None without one.
+
+    A motion whose velocity is zero everywhere is one of steps, which may jump.
+    """
+    period = duration / (len(motion) - 1)
+    ways, fastest = np.linalg.norm(np.diff(motion[:, 0], axis=0), axis=1), np.linalg.norm(motion[:, 1], axis=1).max()
+    longest = int(ways.argmax())
+    if fastest == 0.0 or ways[longest] <= 3.0 * fastest * period + _CLOSE:
+        return None
+    return f"a position that jumps by {ways[longest]:.3g} {unit} near t = {(longest + 0.5) * period:.3g} s"
+
+
+def _find_contradiction(guarded: Any, unit: str) -> str | None:
+    """Return a message about a motion that does not begin at its start, or whose derivatives are those of another one.
+
+    The derivatives are compared with central differences at some times. The median decides, as a motion may have
+    corners. Accelerations that are zero everywhere are not compared.
+
+    Args:
+        guarded: The motion, with `start`, `duration` and `sample`.
+        unit: Unit of its positions, for messages.
+    """
+    apart = 1e-4 * guarded.duration
+    inner = guarded.duration * (np.arange(_PROBES) + 0.382) / _PROBES  # no multiple of a part of the duration
+    motion = guarded.sample(np.concatenate([[0.0], inner - apart, inner, inner + apart]))
+    beside = float(np.linalg.norm(motion[0, 0] - guarded.start))
+    if beside > _CLOSE:
+        return f"a position at t = 0 that is {beside:.3g} {unit} from its start {np.round(guarded.start, 4).tolist()}"
+    before, there, after = np.split(motion[1:], 3)
+    for order, (name, most) in enumerate(_DERIVATIVES, start=1):
+        given, slope = there[:, order], (after[:, order - 1] - before[:, order - 1]) / (2.0 * apart)
+        size = np.maximum(np.linalg.norm(given, axis=1), np.linalg.norm(slope, axis=1))
+        moving = size > 1e-3 * size.max()
+        if not moving.any() or (order == 2 and not given.any()):
+            continue
+        wrong = np.linalg.norm(given - slope, axis=1)[moving] / size[moving]
+        if np.median(wrong) > most:
+            of = "position" if order == 1 else "velocity"
+            return f"a {name} that differs from the derivative of its {of} by {100.0 * np.median(wrong):.0f} % (median)"
+    return None
 
 
 class Trajectories(Registry[KindConfig, [FloatArray], Trajectory]):

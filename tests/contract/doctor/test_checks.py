@@ -12,8 +12,6 @@ from runner.base.errors import RunnerError
 from runner.doctor import engines
 from runner.doctor.examination import examine
 from runner.doctor.finding import DoctorFinding, together
-from runner.robots.inertials import fix_inertia, impossible_inertia
-from runner.robots.tree import read_tree
 
 CLEAN = strangers.chain("arm", [("revolute", Z), ("revolute", Y), ("revolute", Y)])
 
@@ -58,21 +56,46 @@ def test_a_clean_arm_fits(tmp_path):
     assert (examination.tip, examination.arm.has_mass) == ("tip", True)
 
 
-LIMIT = "now 1e6: without limit"
+LIMIT = "the copy has 1e6, without limit"
 TWICE = "now 1e6 rad to both sides: without limits"
+EQUAL, FILLED = 'lower="-2.8" upper="2.8" effort="2000"', 'lower="0.5" upper="0.5" effort="2000"'
 
 
 @pytest.mark.parametrize(
     ("old", "new", "place", "said"),
     [
         ('mass value="2.0"', 'mass value="-2.0"', "link 'l1'", "refused .*: mass -2 kg; allowed: 0 or more"),
+        ('mass value="2.0"', 'mass value="4,0"', "link 'l1'", "refused .*: <mass value='4,0'>; allowed: a number of 0"),
+        ('mass value="2.0"', "mass", "link 'l1'", "refused .*: a <mass> without value; write it, in kg"),
         ('type="revolute"', 'type="floating"', "joint 'q1'", "refused .* is floating; allowed: revolute, prismatic or"),
         ('type="revolute"', 'type="continuous"', "joint 'q1'", "fixed .* continuous; now revolute up to 1e6 rad"),
-        ('effort="2000"', 'effort="0"', "joint 'q1'", f"fixed .* effort limit 0, at which nothing moves; {LIMIT}"),
+        (
+            'effort="2000"',
+            'effort="0"',
+            "joint 'q1'",
+            f"fixed .* effort limit 0: .* nothing drives it; {LIMIT}; write 0",
+        ),
+        ('effort="2000"', 'effort="-60"', "joint 'q1'", "refused .* effort limit -60; allowed: 0 or more"),
+        ('velocity="20"', 'velocity="0"', "joint 'q1'", f"fixed .* velocity limit 0: .* stands still .*; {LIMIT}"),
         ('velocity="20"', "", "joint 'q1'", "note .* no velocity limit; give that of the data sheet"),
-        ('lower="-2.8"', 'lower="3"', "joint 'q1'", f"fixed .* limits from 3 to 2.8; {TWICE}"),
+        ('lower="-2.8"', 'lower="3"', "joint 'q1'", "fixed .* from 3 to 2.8 rad; now exchanged: from 2.8 to 3"),
+        (EQUAL, FILLED, "joint 'q1'", "fixed .* from 0.5 to 0.5 rad, which lock it; now a fixed joint at 0.5 rad"),
+        (EQUAL, FILLED.replace("0.5", "1e6"), "joint 'q1'", f"fixed .* from 1e[+]06 to 1e[+]06 rad; {TWICE}"),
+        ('lower="-2.8" upper="2.8"', "", "joint 'q1'", f"fixed .* no position limits; {TWICE}"),
         ('xyz="0 0 0.3"/><axis', 'xyz="0 0 0,3"/><axis', "joint 'q2'", "xyz='0 0 0,3'>; allowed: three numbers"),
         (f'axis xyz="{Z}"', 'axis xyz="0 0 0"', "joint 'q1'", "refused .* an axis of length 0; give it a direction"),
+        (
+            "</joint>",
+            '<dynamics friction="-1.5"/></joint>',
+            "joint 'q1'",
+            "refused .*: <dynamics friction='-1.5'>; all",
+        ),
+        (
+            "</joint>",
+            '<dynamics damping="-2.5"/></joint>',
+            "joint 'q1'",
+            "note .* damping -2.5; it counts as 0; allowed",
+        ),
         (' iyz="0"', "", "link 'l1'", "fixed .* no inertia iyz; now 0"),
     ],
 )
@@ -90,6 +113,22 @@ def test_what_is_refused_leaves_no_arm_and_what_is_fixed_does(examined):
     fixed = examined(changed('effort="2000"', 'effort="0"'))
     assert fixed.arm.model.effort_limits[0] == np.inf
     assert 'effort="1000000.0"' in fixed.urdf
+
+
+def test_a_locked_joint_stays_where_it_is_and_swapped_limits_are_exchanged(examined):
+    locked = examined(changed(EQUAL, FILLED)).arm.model
+    assert locked.joint_names == ("q2", "q3")
+    free = examined(CLEAN).arm.model
+    assert np.allclose(locked.tip_position(np.array([0.2, 0.4])), free.tip_position(np.array([0.5, 0.2, 0.4])))
+    swapped = examined(changed('lower="-2.8" upper="2.8"', 'lower="2.7" upper="-2.9"')).arm.model
+    assert swapped.position_limits[:, 0].tolist() == [-2.9, 2.7]
+
+
+def test_limits_that_were_not_filled_in_are_no_lock(examined):
+    empty = examined(changed(EQUAL, 'lower="0" upper="0" effort="0"'))
+    said = [str(each) for each in empty.findings if each.place == "joint 'q1'"]
+    assert said[0] == f"fixed   joint 'q1': limits from 0 to 0 rad, and no effort: not filled in; {TWICE}"
+    assert empty.arm.model.nq == 3
 
 
 def bare(*names):
@@ -125,19 +164,6 @@ def test_an_arm_without_mass_has_its_kinematics(examined, links, why):
     assert not examination.arm.has_mass
 
 
-@pytest.mark.parametrize("moments", [(0.1, 0.1, 0.3), (0.2, -0.1, 0.2), (1.0, 2.0, 3.5)])
-def test_an_impossible_inertia_becomes_one_that_a_body_can_have(tmp_path, moments):
-    values = " ".join(f'{key}="{value}"' for key, value in zip(("ixx", "iyy", "izz"), moments, strict=True))
-    text = f'<robot name="x"><link name="a"><inertial><mass value="1"/><inertia {values} ixy="0.01" ixz="0" iyz="0"/>'
-    (tmp_path / "x.urdf").write_text(text + "</inertial></link></robot>")
-    link = read_tree(tmp_path / "x.urdf").links["a"]
-    assert impossible_inertia(link)
-    fix_inertia(link)
-    assert impossible_inertia(link) == []
-    fixed = [float(link.find("inertial/inertia").get(key)) for key in ("ixx", "iyy", "izz")]
-    assert np.abs(np.subtract(fixed, moments)).max() < 0.6 * max(moments)
-
-
 def test_what_moves_beside_the_way_is_held(examined):
     side = strangers.link("side", 1.0, 0.1) + strangers.joint(0, "prismatic", X, 0.1, (0, 0.04)).replace(
         'name="q1"', 'name="slide"'
@@ -169,6 +195,13 @@ def test_a_finger_that_mimics_is_held_without_its_mimic(examined):
     ]
     assert "mimic" not in examination.urdf
     assert examination.arm.model.joint_names == ("q1", "q2", "q3")
+
+
+def test_a_finger_that_equal_limits_lock_is_held_there(examined):
+    finger = strangers.joint(3, "prismatic", X, 0.1, (0.02, 0.02)).replace('<child link="l4"/>', '<child link="jaw"/>')
+    text = CLEAN.replace("</robot>", strangers.link("jaw", 0.1, 0.1) + finger + "</robot>")
+    said = [str(each) for each in examined(text, "tip").findings if each.grade == "fixed"]
+    assert said == ["fixed   joint 'q4': moves, but not the tip; now held at 0.02 m, its limit nearest to zero"]
 
 
 def test_a_mimicking_joint_on_the_way_bars_the_arm(found):
@@ -319,6 +352,25 @@ def test_inertias_and_masses_in_other_units_are_named(examined):
         f"note    link 'l2': a mass of 2000 kg on a link of 0.3 m, {dense}",
         f"note    link 'l3': a mass of 2000 kg on a link of 0.25 m, {dense}",
     ]
+
+
+@pytest.mark.parametrize(("limit", "named"), [(25.1, False), (25.2, True), (999.0, True), (1000.0, False)])
+def test_limits_that_look_like_degrees_are_named(examined, limit, named):
+    notes = [str(each) for each in examined(changed('upper="2.8"', f'upper="{limit}"')).findings]
+    turns = f"a limit of {limit:g} rad, {limit / 6.2832:.0f} turns"
+    said = f"note    joint 'q1': {turns}; degrees? Multiply the limits by pi/180"
+    assert (said in notes) == named
+    assert any("degrees" in note for note in notes) == named
+
+
+@pytest.mark.parametrize(("length", "named"), [(24.0, False), (25.0, True)])
+def test_lengths_that_look_like_millimetres_are_named(examined, length, named):
+    text = strangers.chain("arm", [("revolute", Z), ("revolute", Y), ("revolute", Y)], length=length, mass=2e8)
+    notes = [str(each) for each in examined(text).findings if each.place == "lengths"]
+    whole = 2.0 * length + 0.065**0.5
+    assert (
+        notes == [f"note    lengths: the joints lie {whole:.4g} m apart in sum; mm? Divide all lengths by 1000"] * named
+    )
 
 
 def test_the_effect_of_a_corrected_inertia_is_told(examined):

@@ -180,13 +180,17 @@ def test_a_sweep_takes_a_plug_in(mine):
         ),
         ("controler=mine/spring.py", r"did you mean controller\?"),
         ("controller=", r"must be GROUP=MODULE"),
+        ("plant", r"must be GROUP=MODULE, as in plant=mine/part.py$"),
+        ("controller=mine/spring.py:nan", r"Hydra reads controller=nan as a value, not as a name; rename it"),
+        ("noise=mine/Null.py", r"Hydra reads noise=Null as a value"),
         ("controller=mine/absent.py", r"no file mine/absent.py"),
         ("controller=mine.absent", r"no module mine.absent"),
         ("controller=json.py", r"Python has another module json, .*; rename yours"),
     ],
 )
 def test_what_cannot_be_found_is_said(mine, text, message):
-    (mine / "json.py").touch()
+    for name in ("json.py", "mine/Null.py"):
+        (mine / name).touch()
     with pytest.raises(RunnerError, match=message):
         discovery.use_plugins([text])
 

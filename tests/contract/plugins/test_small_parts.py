@@ -8,6 +8,7 @@ import pytest
 import yaml
 
 from runner.assembly.validation import validate
+from runner.base.errors import ConfigError
 from runner.base.paths import examples_dir
 from runner.config.compose.compose import compose
 from runner.plugins.discovery import GROUPS, use_plugins
@@ -18,6 +19,7 @@ from runner.simulation.run import simulate_repetition
 from runner.store import open_run, open_sweep
 
 HERE = examples_dir() / "small_parts"
+PAGE = examples_dir().parent / "docs" / "plugins.md"
 LONGEST = 25  # lines with text
 ARM = ("robot=macro", "trajectory=quintic", "controller=computed_torque", "plant=rk4", "duration=0.1")
 TORQUES = ("disturbance_observer=momentum", "disturbance_observer.torque=measured", "joint_torque_sensor=ideal")
@@ -69,6 +71,16 @@ def test_a_part_changes_the_trace(use, group):
 def signal(group, trace):
     """Return the signal that a part changes: the motion, or the readings that no law of the run uses."""
     return trace.contact.reading if group == "wrist_sensor" else trace.q
+
+
+def test_a_law_that_reads_the_wrist_sensor_takes_that_of_a_plug_in_by_three_keys(use):
+    use("wrist_sensor", "weak_gauge")
+    law = ("robot=meca500", "trajectory=quintic", "controller=admittance", "wrist_sensor=weak_gauge")
+    with pytest.raises(ConfigError, match=r"controller\.sensor\.kind: found 'weak_gauge'; allowed: force_torque"):
+        validate(compose(law, [HERE]))
+    line = next(line for line in PAGE.read_text().splitlines() if "wrist_sensor@controller.sensor" in line)
+    config = validate(compose([key.strip("'") for key in line.split() if "controller.sensor" in key] + [*law], [HERE]))
+    assert (config.wrist_sensor.kind, config.controller.sensor.kind) == ("weak_gauge", "force_torque")
 
 
 def test_a_metric_is_in_the_record(use, cli):

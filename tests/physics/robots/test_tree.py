@@ -1,10 +1,12 @@
 """URDF tree: root, ends and ways between links; files that are none are refused."""
 
+import numpy as np
 import pytest
 from support import strangers
 
 from runner.base.errors import ConfigError
 from runner.robots.description import read_urdf
+from runner.robots.model import RobotModel
 from runner.robots.tree import read_tree
 
 LINKS = '<link name="a"/><link name="b"/><link name="c"/>'
@@ -74,6 +76,36 @@ def test_a_branched_arm_is_no_robot_of_a_config(tmp_path):
     )
     (tmp_path / "arm.urdf").write_text(text.replace("</robot>", branch + "</robot>"))
     with pytest.raises(ConfigError, match=r"branches: q9 move in addition to q1, q2; allowed: a serial arm"):
+        read_urdf(tmp_path / "arm.urdf", {})
+
+
+def test_a_single_joint_behind_the_tip_counts_as_one_of_the_arm(tmp_path):
+    text = strangers.chain("arm", [("revolute", strangers.X), ("revolute", strangers.Y)])
+    jaw = joint("jaw", "tip", "finger", "prismatic").replace(
+        "</joint>", '<limit lower="0" upper="0.04" effort="1" velocity="1"/></joint>'
+    )
+    (tmp_path / "arm.urdf").write_text(text.replace("</robot>", f'<link name="finger"/>{jaw}</robot>'))
+    model = RobotModel(read_urdf(tmp_path / "arm.urdf", {}), "tip")
+    assert model.joint_names == ("q1", "q2", "jaw")
+    assert not model.tip_jacobian(np.zeros(3))[:, 2].any()
+
+
+@pytest.mark.parametrize(
+    ("old", "new", "problem"),
+    [
+        (
+            "</joint>",
+            '<dynamics friction="-1.5"/></joint>',
+            r"joint 'q1' in .* has <dynamics friction='-1.5'>; allowed",
+        ),
+        ('mass value="2.0"', 'mass value="4,0"', r"link 'l1' in .* has <mass value='4,0'>; allowed: a number of 0 or"),
+        ('mass value="2.0"', 'mass value="-4"', r"link 'l1' in .* has mass -4 kg; allowed: 0 or more"),
+    ],
+)
+def test_values_of_a_file_that_are_wrong_are_quoted(tmp_path, old, new, problem):
+    text = strangers.chain("arm", [("revolute", strangers.X), ("revolute", strangers.Y)])
+    (tmp_path / "arm.urdf").write_text(text.replace(old, new, 1))
+    with pytest.raises(ConfigError, match=problem):
         read_urdf(tmp_path / "arm.urdf", {})
 
 

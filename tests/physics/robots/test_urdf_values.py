@@ -28,6 +28,7 @@ FAULTS = {
     "place": (changed('<origin xyz="0 0 0.15"/>', '<origin xyz="nan 0 0"/>'), "<origin xyz='nan 0 0'>; allowed:"),
     "length": (changed('xyz="0 0 0.3"/><axis', 'xyz="0 0 1e300"/><axis'), "<origin xyz='0 0 1e300'>; allowed: three"),
     "axis": (changed(f'axis xyz="{Z}"', 'axis xyz="0 0 0"'), "an axis of length 0; give it a direction"),
+    "effort": (changed('effort="2000"', 'effort="-1"'), "effort limit -1; allowed: 0 or more"),
     "still": (ARM.replace('type="revolute"', 'type="fixed"'), "no joint"),
     "65 joints": (joints(65), "65 joints that move; allowed: 1 to 64"),
     "200 joints": (joints(200), "200 joints that move; allowed: 1 to 64"),
@@ -57,7 +58,6 @@ LIMITS = {
     'lower="-2.8" upper="2.8"': ('lower="3" upper="-3"', "has limits from 3 to -3; lower must be below upper"),
     'lower="-2.8"': ('lower="low"', "has a limit lower='low'; allowed: a number"),
     'velocity="20"': ('velocity="nan"', "has a limit velocity='nan'; allowed: a number"),
-    'effort="2000"': ('effort="-1"', "has effort limit -1; allowed: 0 or more"),
 }
 
 

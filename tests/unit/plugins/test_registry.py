@@ -85,6 +85,34 @@ def test_what_a_kind_of_the_users_raises_is_told_with_its_place(parts):
         parts.build(Config(kind="foreign", size=2.0))
 
 
+class Positions:
+    def joint_positions(self, time, q, dq, reference):
+        return q
+
+
+class Torques:
+    def torque(self, time, q, dq, reference):
+        return q
+
+
+@pytest.mark.parametrize(
+    ("commands", "law", "wrong", "right"),
+    [
+        ("torque", Positions, "joint_positions instead of torque", "position"),
+        ("position", Torques, "torque instead of joint_positions", "torque"),
+    ],
+)
+def test_a_law_of_the_other_command_names_the_member_to_write(parts, commands, law, wrong, right):
+    parts = Registry("part", {"own": "some_own"}, guard=lambda built, config: built)
+    module = sys.modules["some_foreign"]
+    module.COMMANDS, module.build = commands, lambda config: (types.SimpleNamespace(controller=law()),)
+    why = f'\'foreign\' has COMMANDS = "{commands}", and its law {law.__name__} has {wrong}; write COMMANDS = "{right}"'
+    with pytest.raises(ConfigError, match=why):
+        parts.build(Config(kind="foreign", size=2.0))
+    module.COMMANDS = right
+    assert isinstance(parts.build(Config(kind="foreign", size=2.0))[0].controller, law)
+
+
 @pytest.mark.parametrize("size", ["1", True, None, float("nan"), float("inf"), [1.0]])
 def test_models_convert_nothing(size):
     with pytest.raises(ValidationError):
