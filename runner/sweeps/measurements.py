@@ -276,10 +276,11 @@ def limit_sweep(sweep: Sweep, where: Sequence[str]) -> Sweep:
     """Return a sweep reduced to the cells that have some values, swept or in their configs; see `find_cells`."""
     if not where:
         return sweep
-    axes, _ = axes_of(sweep.overrides)
+    axes, fixed = axes_of(sweep.overrides)
     _, others = split_where(sweep, where)
     if others:
-        axes = [*axes, *_config_axes(_gather(sweep), {text.partition("=")[0] for text in others})]
+        keys = {text.partition("=")[0] for text in others}
+        axes = [*axes, *_config_axes(_gather(sweep), keys, dict(map(split_override, fixed)))]
     return _part(sweep, find_cells(axes, where, len(sweep.hashes)).tolist())
 
 
@@ -290,15 +291,37 @@ def split_where(sweep: Sweep, where: Sequence[str]) -> tuple[list[str], list[str
     return swept, [text for text in where if text not in swept]
 
 
-def _config_axes(gathered: Gathered, keys: Collection[str]) -> Iterator[Axis]:
-    """Yield an axis for each key that is in the config of every cell."""
+def _config_axes(gathered: Gathered, keys: Collection[str], typed: Mapping[str, str]) -> Iterator[Axis]:
+    """Yield an axis for each key that is in the config of every cell; the value of a group is its option.
+
+    Args:
+        gathered: The cells.
+        keys: The keys.
+        typed: Values of the keys that all cells share, as typed.
+
+    Raises:
+        RunnerError: If a key is a group whose option is not stored.
+    """
     for key in keys:
         values: list[Any] = [None] * len(gathered.hashes)
         for config, members in gathered.configs:
+            value = get(config, key)
+            if isinstance(value, Mapping):
+                value = _option(key, value, typed)
             for cell in np.concatenate(members).tolist():
-                values[cell] = get(config, key)
+                values[cell] = value
         if None not in values:
             yield make_axis(key, values)
+
+
+def _option(key: str, group: Mapping[str, Any], typed: Mapping[str, str]) -> Any:
+    """Return the option of a group: as typed, else its kind, else its name."""
+    given = typed.get(key, "")
+    option = given if given and "{" not in given else group.get("kind", group.get("name"))
+    if option is None:
+        keys = ", ".join(f"{key}.{name}" for name in group)
+        raise RunnerError(f"--where {key}: a group whose option is not stored. Allowed: {keys}.")
+    return option
 
 
 def _part(sweep: Sweep, cells: Sequence[int]) -> Sweep:

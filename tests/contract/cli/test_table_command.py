@@ -64,13 +64,16 @@ def test_a_selection_is_csv_unless_told_otherwise(cli, sweep):
 
 def test_cells_are_chosen_by_any_value_of_their_configs(cli, sweep):
     swept = cli("table", sweep, "--metrics", "peak_torque", "--where", "controller=computed_torque").out
-    values = ("controller.kind=computed_torque", "robot.name=macro", "duration=50ms")
+    values = ("controller.kind=computed_torque", "robot.name=macro", "duration=50ms", "robot=macro", "plant=bullet")
     by_config = [text for value in values for text in ("--where", value)]
     assert cli("table", sweep, "--metrics", "peak_torque", *by_config).out == swept
     both = cli("table", sweep, "--metrics", "peak_torque", "--by", "controller", "--where", "robot.name=macro")
     assert len(both.out.splitlines()) == 3
     ending = cli("table", sweep, "--where", "robot.name=mini")
     assert (ending.code, ending.err) == (2, "runner: --where robot.name: unknown value 'mini'. Allowed: macro.\n")
+    assert "--where robot: unknown value 'mini'. Allowed: macro." in cli("table", sweep, "--where", "robot=mini").err
+    unstored = cli("table", sweep, "--where", "noise=thesis").err
+    assert "--where noise: a group whose option is not stored. Allowed: noise.position, " in unstored
     assert "unknown value '50mm'. Allowed: 0.05." in cli("table", sweep, "--where", "duration=50mm").err
     assert "--where: unknown axis 'robot.nam'" in cli("table", sweep, "--where", "robot.nam=macro").err
 
