@@ -213,17 +213,17 @@ def _check_spec(runs: "Sequence[Run]", cells: Sequence[str], at_most: float | No
 
 def _rows(run: "Run", at_most: float | None) -> Iterator[list[str]]:
     """Yield a row for each bound, with its verdict first."""
-    from runner.reporting.spec_blocks import lacking_text, spec_rows
+    from runner.reporting.spec_blocks import lacking_text, spec_rows, without_value
 
     if run.spec is None:
         raise RunnerError(f"{run.folder}: has no spec, but the others have one; run it again with theirs")
     if run.spec.lacking:
         raise RunnerError(f"{run.folder}: {lacking_text(run.spec, run.metrics)}")
     for one, row in zip(run.spec.bounds, spec_rows(run.spec), strict=False):
-        yield _judged(one, row, at_most)
+        yield _judged(one, row, at_most, without_value(run, one.metric))
 
 
-def _judged(one: "Kept", row: Sequence[str], at_most: float | None) -> list[str]:
+def _judged(one: "Kept", row: Sequence[str], at_most: float | None, without: str) -> list[str]:
     from runner.statistics.spec import judge_share
 
     assert one.share is not None  # noqa: S101 - `_rows` rejects runs that lack a metric
@@ -231,6 +231,8 @@ def _judged(one: "Kept", row: Sequence[str], at_most: float | None) -> list[str]
     text = _SAYS[verdict.says]
     if verdict.says == "untold":
         text += f": {_more(verdict.needed, one.share)}"
+    if without:
+        text += f": {without}"
     reason = f" ({one.bound.reason})" if one.bound.reason and verdict.says != "kept" else ""
     return [verdict.says, *row, one_line(text + reason)]
 
