@@ -19,11 +19,10 @@ from runner.store.axes import Axis, axes_of, find_cells, make_axis
 from runner.store.drawn import draws_nothing
 from runner.store.finished import Finished, finer_names, read_finer
 from runner.store.run import Run
-from runner.store.seal import DamagedError
 from runner.store.sweep import InShard, Sweep
 from runner.sweeps.differing import Resolved, UnsweptDifference
 from runner.sweeps.gathering import Gathered
-from runner.sweeps.status import find_status
+from runner.sweeps.status import told_if_at_work
 
 
 @dataclass(frozen=True)
@@ -224,7 +223,7 @@ def measure_sweep(sweep: Sweep) -> Measurements:
 def _gather(sweep: Sweep) -> Gathered:
     gathered = Gathered(len(sweep.hashes))
     progress.begin("reading runs", len(sweep.hashes), "cells")
-    try:
+    with told_if_at_work(sweep):
         for found in sweep.found():
             if isinstance(found, InShard):
                 gathered.add_shard(found.path, found.rows, found.cells)
@@ -232,18 +231,6 @@ def _gather(sweep: Sweep) -> Gathered:
             else:
                 gathered.add_run(*found)
                 progress.step()
-    except StoreError as error:
-        status = find_status(sweep)
-        if isinstance(error, DamagedError) or not (left := status.left):
-            raise
-        if status.at_work:
-            raise StoreError(
-                f"{sweep.folder} is running, {status.done} of {status.done + left} cells are stored; "
-                "wait, or watch it with: runner status"
-            ) from error
-        raise StoreError(
-            f"{left} of {len(sweep.hashes)} cells of {sweep.folder} are not stored; continue with: {sweep.continuation}"
-        ) from error
     return gathered
 
 
