@@ -11,6 +11,7 @@ Example: runner check latest --baseline baseline.yaml --format markdown
 import argparse
 import math
 from collections.abc import Iterator, Sequence
+from contextlib import nullcontext
 from typing import TYPE_CHECKING
 
 from runner.base.errors import RunnerError
@@ -63,6 +64,7 @@ def run(options: argparse.Namespace) -> int:
     from runner.store.cells import cell_names, save_baseline
     from runner.store.kinds import kind_of
     from runner.sweeps.rounding import RoundingSensitivity, find_sensitive
+    from runner.sweeps.status import told_if_at_work
 
     if options.require_scope is not None or kind_of(options.folder) == "challenge":
         return _check_scope(options)
@@ -82,7 +84,8 @@ def run(options: argparse.Namespace) -> int:
         return _check_sweep(store.open_sweep(options.folder), baseline, markdown)
     if markdown:
         options.parser.error("--format markdown: only for the baseline of a sweep. Add --baseline FILE.")
-    runs = store.open_runs(options.folder)
+    with told_if_at_work(store.open_sweep(options.folder)) if kind_of(options.folder) != "run" else nullcontext():
+        runs = store.open_runs(options.folder)
     judged = options.baseline is None and runs[0].spec is not None
     if options.max_failure_probability is not None and not judged:
         options.parser.error(
@@ -213,17 +216,17 @@ def _check_spec(runs: "Sequence[Run]", cells: Sequence[str], at_most: float | No
 
 def _rows(run: "Run", at_most: float | None) -> Iterator[list[str]]:
     """Yield a row for each bound, with its verdict first."""
-    from runner.reporting.spec_blocks import lacking_text, spec_rows
+    from runner.reporting.spec_blocks import lacking_text, spec_rows, without_value
 
     if run.spec is None:
         raise RunnerError(f"{run.folder}: has no spec, but the others have one; run it again with theirs")
     if run.spec.lacking:
         raise RunnerError(f"{run.folder}: {lacking_text(run.spec, run.metrics)}")
     for one, row in zip(run.spec.bounds, spec_rows(run.spec), strict=False):
-        yield _judged(one, row, at_most)
+        yield _judged(one, row, at_most, without_value(run, one.metric))
 
 
-def _judged(one: "Kept", row: Sequence[str], at_most: float | None) -> list[str]:
+def _judged(one: "Kept", row: Sequence[str], at_most: float | None, without: str) -> list[str]:
     from runner.statistics.spec import judge_share
 
     assert one.share is not None  # noqa: S101 - `_rows` rejects runs that lack a metric
@@ -231,6 +234,8 @@ def _judged(one: "Kept", row: Sequence[str], at_most: float | None) -> list[str]
     text = _SAYS[verdict.says]
     if verdict.says == "untold":
         text += f": {_more(verdict.needed, one.share)}"
+    if without:
+        text += f": {without}"
     reason = f" ({one.bound.reason})" if one.bound.reason and verdict.says != "kept" else ""
     return [verdict.says, *row, one_line(text + reason)]
 

@@ -338,7 +338,7 @@ def _print_spec(run: "Run") -> None:
         return
     from runner.reporting.spec_blocks import COLUMNS, lacking_text, spec_rows
 
-    print(terminal(Table("", COLUMNS, spec_rows(run.spec))), file=sys.stderr)
+    print(terminal(Table("", COLUMNS, spec_rows(run.spec, run))), file=sys.stderr)
     lacking = lacking_text(run.spec, run.metrics)
     if lacking:
         print(one_line(f"runner: {lacking}"), file=sys.stderr)

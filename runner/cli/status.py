@@ -31,8 +31,10 @@ def run(options: Namespace) -> int:
     from runner.base.machine import describe_mixture
     from runner.base.quantities import format_duration
     from runner.store import open_sweep
+    from runner.store.kinds import kind_of
     from runner.sweeps.at_work import in_words
     from runner.sweeps.status import find_status, in_ranges, parts_of
+    from runner.sweeps.tuning.study import count_trials, open_tuning
 
     sweep = open_sweep(options.folder)
     if options.parts is not None:
@@ -43,13 +45,17 @@ def run(options: Namespace) -> int:
     if options.parts is not None:
         print(in_ranges(parts_of(status.missing, options.parts)))
         return 0
-    failed = f" ({status.failed} of them failed)" if status.failed else ""
+    of_trials = kind_of(options.folder) == "tuning"
+    if of_trials:
+        print(count_trials(open_tuning(options.folder).trials))
+    failed = f" ({status.failed} of them failed)" if status.failed and not of_trials else ""
     print(f"{status.done + status.left} runs: {status.done} done{failed}, {status.left} left")
     if mixture := describe_mixture(status.machines):
         print(one_line(mixture))
     if any(status.caveats):
+        cells = "trials" if of_trials else "cells"
         with_some = sum(count > 0 for count in status.caveats)
-        print(f"{with_some} of {len(status.caveats)} stored cells have caveats; `runner table` says which")
+        print(f"{with_some} of {len(status.caveats)} stored {cells} have caveats; `runner table` says which")
     if status.left and status.at_work:
         to_go = "" if status.seconds is None else f", about {format_duration(status.seconds)} to go"
         print(f"at work ({in_words(status.at_work)}){to_go}")

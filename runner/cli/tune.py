@@ -76,11 +76,11 @@ def _tell(tuning: "Tuning") -> int:
     from runner.reporting.stored import write
     from runner.reporting.sweep.tuning import compare_on_fresh_seed
     from runner.sweeps.tuning.objective import best
-    from runner.sweeps.tuning.study import at_ends
+    from runner.sweeps.tuning.study import at_ends, count_trials
 
     trials, objectives = tuning.trials, tuning.study.objectives
     failed = sum(bool(trial.failure) for trial in trials)
-    print(f"runner: {len(trials)} trials, {failed} of them failed", file=sys.stderr)
+    print(f"runner: {count_trials(trials)}", file=sys.stderr)
     for number in best(trials, objectives):
         values = ", ".join(
             f"{objective.metric} {value:.5g} {objective.unit}".strip()

@@ -46,9 +46,9 @@ class Row:
         entry: The result.
         what: Its overrides.
         answer: Its answer in a sentence; empty if it has none.
-        runs: Number of runs times repetitions, such as "6 x 8".
+        runs: Number of runs, or trials, times repetitions, such as "6 x 8".
         caveats: Number of runs with caveats.
-        failed: Number of failed runs.
+        failed: Number of failed runs, or trials.
         state: "good", "unfinished", "other version" or "damaged".
     """
 
@@ -165,13 +165,16 @@ def _sweep_row(entry: ListedResult, sweep: Sweep) -> Row:
     many = len(sweep.hashes) > _MOST_CELLS or status.left or entry.kind == "challenge"
     measured = None if many else measure_sweep(sweep)
     times = f" x {measured.repetitions}" if measured else ""
+    count, failed = len(sweep.hashes), status.failed
     if entry.kind == "tuning":
-        answer = summary_of_tuning(open_tuning(entry.folder))
+        tuning = open_tuning(entry.folder)
+        answer = summary_of_tuning(tuning)
+        count, failed = len(tuning.trials), sum(bool(trial.failure) for trial in tuning.trials)
     elif entry.kind == "challenge":
         answer = challenge_answer(open_challenge(entry.folder))
     else:
         answer = in_short(choose(measured)) if measured else ""
-    return Row(entry, words, answer, f"{len(sweep.hashes)}{times}", with_caveats, status.failed, state)
+    return Row(entry, words, answer, f"{count}{times}", with_caveats, failed, state)
 
 
 def write_page(rows: Sequence[Row], outputs: Path, path: Path) -> None:

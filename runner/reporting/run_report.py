@@ -129,18 +129,22 @@ def _cover(run: Run) -> Cover:
 
 
 def _subtitle(run: Run, changed: Changes | None) -> str:
-    """Return limits and disturbances of the arm, with the keys changed there, and the experiment that was asked for."""
+    """Return limits and disturbances of the arm, with the keys changed there, and the experiment that was asked for.
+
+    The option "none" of a group is not named with a changed key, which it no longer describes.
+    """
     chosen = run.provenance["choices"]
-    named = f"torque limits {_spaced(chosen['torque_limits'])}" if "torque_limits" in chosen else "torque limits"
-    limits = "no torque limits" if run.config["torque_limits"]["max"] is None else named
     own = {key: value for key, (_, value) in (changed or {}).items() if key.startswith(("torque_limits.", "noise."))}
-    is_bare = chosen.get("noise") == "none" and any(key.startswith("noise.") for key in own)
-    texts = [f"noise {_spaced(chosen['noise'])}"] if "noise" in chosen and not is_bare else []
+    bare = [group for group in chosen if chosen[group] == "none" and any(key.startswith(f"{group}.") for key in own)]
+    has_limits = run.config["torque_limits"]["max"] is not None
+    named = [group for group in ("torque_limits", "noise") if group in chosen and group not in bare]
+    texts = [] if has_limits else ["no torque limits"]
+    texts += [f"{_spaced(group)} {_spaced(chosen[group])}" for group in named if group == "noise" or has_limits]
     texts += [f"{key}={_yaml(value)}" for key, value in own.items()]
     texts += [f"input shaper {run.config['input_shaper']['kind'].upper()}"] if "input_shaper" in run.config else []
     texts += ["a notch in the torques"] if "notch" in run.config else []
     texts += [f"experiment {chosen['experiment']}"] if "experiment" in chosen else []
-    return ", ".join([limits, *texts])
+    return ", ".join(texts)
 
 
 def run_blocks(run: Run) -> list[ReportBlock]:

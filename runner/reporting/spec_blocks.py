@@ -3,6 +3,8 @@
 from collections.abc import Collection, Sequence
 from typing import TYPE_CHECKING
 
+import numpy as np
+
 from runner.base.errors import nearest
 from runner.base.quantities import format_range, number, quantity
 from runner.plugins.metric_units import unit_of
@@ -32,7 +34,7 @@ def spec_blocks(run: Run) -> list[ReportBlock]:
     """Return the bounds of a run's spec, with their reasons, and a notice where the run lacks one of the metrics."""
     if run.spec is None:
         return []
-    rows, header = [[*row] for row in spec_rows(run.spec)], [*COLUMNS]
+    rows, header = [[*row] for row in spec_rows(run.spec, run)], [*COLUMNS]
     reasons = [one.bound.reason for one in run.spec.bounds]
     if any(reasons):
         rows = [[*row, reason] for row, reason in zip(rows, [*reasons, ""], strict=False)]
@@ -65,20 +67,34 @@ def spec_of_several(runs: Sequence[Run], names: Sequence[str]) -> list[ReportBlo
         [name, *row]
         for name, run in zip(names, runs, strict=True)
         if run.spec is not None
-        for row in spec_rows(run.spec)
+        for row in spec_rows(run.spec, run)
     ]
     return [Table(f"Bounds of the specs. {RULE}", ["run", *COLUMNS], rows)] if rows else []
 
 
-def spec_rows(spec: "Spec") -> list[tuple[str, str, str, str]]:
-    """Return a row of COLUMNS for each bound, and one for all where there are several."""
-    rows = [
-        (bound_text(one.metric, one.bound) + late_text(one.metric, one.bound, one.history), *share_texts(one.share))
-        for one in spec.bounds
-    ]
+def spec_rows(spec: "Spec", run: Run | None = None) -> list[tuple[str, str, str, str]]:
+    """Return a row of COLUMNS for each bound, and one for all where there are several.
+
+    Args:
+        spec: The bounds.
+        run: The run, to say in how many repetitions a metric has no value; None says nothing of it.
+    """
+    rows = []
+    for one in spec.bounds:
+        without = without_value(run, one.metric) if run else ""
+        said = bound_text(one.metric, one.bound) + late_text(one.metric, one.bound, one.history)
+        rows.append((f"{said}: {without}" if without else said, *share_texts(one.share)))
     if len(rows) > 1:
         rows.append((_ALL, "–", "–", "–") if spec.whole is None else (_ALL, *share_texts(spec.whole)))
     return rows
+
+
+def without_value(run: Run, metric: str) -> str:
+    """Return in how many repetitions of a run a metric has no value; empty if it has one in each, or in no run."""
+    if metric not in run.record["metrics"]:
+        return ""
+    lost = int(np.isnan(run.values(metric)).sum())
+    return f"no value in {lost} of {run.repetitions} repetition{'s' if run.repetitions > 1 else ''}" if lost else ""
 
 
 def bound_text(metric: str, bound: Bound) -> str:

@@ -66,6 +66,14 @@ class Sweep:
         """Outputs folder that contains the runs."""
         return self.folder.parent.parent
 
+    def incomplete_text(self, left: int) -> str:
+        """Return that some cells are not stored, with the command that continues.
+
+        Args:
+            left: Their number.
+        """
+        return f"{left} of {len(self.hashes)} cells of {self.folder} are not stored; continue with: {self.continuation}"
+
     def found(self) -> Iterator["tuple[int, Run] | InShard"]:
         """Yield the run of each cell: a cell with its run, or many cells with the shard that contains their runs.
 
@@ -98,8 +106,15 @@ class Sweep:
         try:
             run = finished.open(name)
         except StoreError as error:
+            left = sum(finished.outcome(each) is None for each in self.hashes) if type(error) is StoreError else 0
+            if left and not finished.damage:
+                raise IncompleteError(self.incomplete_text(left)) from error
             raise StoreError(f"{error}; `runner status {self.folder}` says what is left of the sweep") from error
         return run.judged_by(self.spec, self.history) if self.spec else run
+
+
+class IncompleteError(StoreError):
+    """A sweep lacks the runs of some cells."""
 
 
 def without_keys(command: str, keys: Sequence[str]) -> str:

@@ -19,11 +19,10 @@ from runner.store.axes import Axis, axes_of, find_cells, make_axis
 from runner.store.drawn import draws_nothing
 from runner.store.finished import Finished, finer_names, read_finer
 from runner.store.run import Run
-from runner.store.seal import DamagedError
 from runner.store.sweep import InShard, Sweep
 from runner.sweeps.differing import Resolved, UnsweptDifference
 from runner.sweeps.gathering import Gathered
-from runner.sweeps.status import find_status
+from runner.sweeps.status import told_if_at_work
 
 
 @dataclass(frozen=True)
@@ -226,7 +225,7 @@ def measure_sweep(sweep: Sweep) -> Measurements:
 def _gather(sweep: Sweep) -> Gathered:
     gathered = Gathered(len(sweep.hashes))
     progress.begin("reading runs", len(sweep.hashes), "cells")
-    try:
+    with told_if_at_work(sweep):
         for found in sweep.found():
             if isinstance(found, InShard):
                 gathered.add_shard(found.path, found.rows, found.cells)
@@ -234,18 +233,6 @@ def _gather(sweep: Sweep) -> Gathered:
             else:
                 gathered.add_run(*found)
                 progress.step()
-    except StoreError as error:
-        status = find_status(sweep)
-        if isinstance(error, DamagedError) or not (left := status.left):
-            raise
-        if status.at_work:
-            raise StoreError(
-                f"{sweep.folder} is running, {status.done} of {status.done + left} cells are stored; "
-                "wait, or watch it with: runner status"
-            ) from error
-        raise StoreError(
-            f"{left} of {len(sweep.hashes)} cells of {sweep.folder} are not stored; continue with: {sweep.continuation}"
-        ) from error
     return gathered
 
 
@@ -288,10 +275,11 @@ def limit_sweep(sweep: Sweep, where: Sequence[str]) -> Sweep:
     """Return a sweep reduced to the cells that have some values, swept or in their configs; see `find_cells`."""
     if not where:
         return sweep
-    axes, _ = axes_of(sweep.overrides)
+    axes, fixed = axes_of(sweep.overrides)
     _, others = split_where(sweep, where)
     if others:
-        axes = [*axes, *_config_axes(_gather(sweep), {text.partition("=")[0] for text in others})]
+        keys = {text.partition("=")[0] for text in others}
+        axes = [*axes, *_config_axes(_gather(sweep), keys, dict(map(split_override, fixed)))]
     return _part(sweep, find_cells(axes, where, len(sweep.hashes)).tolist())
 
 
@@ -302,15 +290,37 @@ def split_where(sweep: Sweep, where: Sequence[str]) -> tuple[list[str], list[str
     return swept, [text for text in where if text not in swept]
 
 
-def _config_axes(gathered: Gathered, keys: Collection[str]) -> Iterator[Axis]:
-    """Yield an axis for each key that is in the config of every cell."""
+def _config_axes(gathered: Gathered, keys: Collection[str], typed: Mapping[str, str]) -> Iterator[Axis]:
+    """Yield an axis for each key that is in the config of every cell; the value of a group is its option.
+
+    Args:
+        gathered: The cells.
+        keys: The keys.
+        typed: Values of the keys that all cells share, as typed.
+
+    Raises:
+        RunnerError: If a key is a group whose option is not stored.
+    """
     for key in keys:
         values: list[Any] = [None] * len(gathered.hashes)
         for config, members in gathered.configs:
+            value = get(config, key)
+            if isinstance(value, Mapping):
+                value = _option(key, value, typed)
             for cell in np.concatenate(members).tolist():
-                values[cell] = get(config, key)
+                values[cell] = value
         if None not in values:
             yield make_axis(key, values)
+
+
+def _option(key: str, group: Mapping[str, Any], typed: Mapping[str, str]) -> Any:
+    """Return the option of a group: as typed, else its kind, else its name."""
+    given = typed.get(key, "")
+    option = given if given and "{" not in given else group.get("kind", group.get("name"))
+    if option is None:
+        keys = ", ".join(f"{key}.{name}" for name in group)
+        raise RunnerError(f"--where {key}: a group whose option is not stored. Allowed: {keys}.")
+    return option
 
 
 def _part(sweep: Sweep, cells: Sequence[int]) -> Sweep:

@@ -3,14 +3,15 @@
 import contextlib
 import math
 from collections import Counter
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
+from runner.base.errors import StoreError
 from runner.base.machine import Machine
 from runner.store.finished import Finished
 from runner.store.seal import DamagedError, read_json
-from runner.store.sweep import Sweep
+from runner.store.sweep import IncompleteError, Sweep
 from runner.sweeps.at_work import Command, commands_at_work
 
 NOTE = "progress.json"
@@ -70,6 +71,25 @@ def find_status(sweep: Sweep) -> Status:
         damage=finished.damage,
         machines=Counter(end.machine for end in stored),
     )
+
+
+@contextlib.contextmanager
+def told_if_at_work(sweep: Sweep) -> Iterator[None]:
+    """Raise that a sweep is running, instead of that it lacks runs, if a command works on it.
+
+    Raises:
+        StoreError: if the sweep lacks runs.
+    """
+    try:
+        yield
+    except IncompleteError as error:
+        status = find_status(sweep)
+        if not status.at_work:
+            raise
+        raise StoreError(
+            f"{sweep.folder} is running, {status.done} of {status.done + status.left} cells are stored; "
+            "wait, or watch it with: runner status"
+        ) from error
 
 
 def parts_of(cells: Sequence[int], parts: int) -> list[int]:

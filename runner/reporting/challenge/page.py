@@ -8,11 +8,11 @@ import numpy as np
 
 from runner.base.sanitize import one_line
 from runner.reporting.challenge.words import (
-    KEPT,
     NOT_DONE,
     TITLES,
     class_of,
     combinations_table,
+    is_kept,
     scope_sentences,
     turning_rows,
     variations_table,
@@ -208,7 +208,7 @@ def turns_answer(made: Challenge, kinds: Sequence[str]) -> list[str]:
     if not made.came_back:
         return ["the stored answer does not come back on fresh seeds"]
     found = chain.from_iterable(class_of(made, kind) for kind in CLASSES if kind in kinds)
-    turned = [one for one in found if not one.judged or one.judged.word not in KEPT]
+    turned = [one for one in found if not is_kept(made, one)]
     left = [one for one in made.left_out if one.kind in kinds]
     return [
         *(f"{one.variation.label}: {word_text(made, one)}" for one in turned),

@@ -130,13 +130,14 @@ def _ask(one: Answer, answers: Sequence[Answer], outputs: Path, folders: Sequenc
         Side(name, own_overrides(run.overrides), _medians(side, cell))
         for name, run, (side, cell) in zip(one.full_names, runs, cells, strict=True)
     ]
+    size = found.difference / (1.0 if "fraction" in one.metric else max(larger_median(found), ROUNDING))
     conditions = list(dict.fromkeys(label_text(other.at) for other in answers if len(other.at) == len(one.at)))
     return Question(
         one.metric,
         one.unit,
         (sides[0], sides[1]),
         one.sign,
-        found.difference / (1.0 if "fraction" in one.metric else max(larger_median(found), ROUNDING)),
+        size if np.isfinite(size) else None,
         None if found.error is None or not np.isfinite(found.error) else found.error,
         max(seeds) + 1,
         label_text(one.at) if one.at else "",

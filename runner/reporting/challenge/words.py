@@ -49,13 +49,18 @@ _NAMED = 8  # families that a sentence names
 
 
 def answer_text(made: Challenge) -> str:
-    """Return the answer of the asked case on fresh seeds, such as "29 % smaller with b than with a"."""
+    """Return the answer of the asked case on fresh seeds, such as "29 % smaller with b than with a".
+
+    If one side has no value, there is no difference to say: "only b has a value, a has none".
+    """
     question, fresh = made.question, made.fresh
     a, b = (side.name for side in question.sides)
     if not question.sign:
         return f"no difference that counts is shown between {a} and {b}"
     effect = question.size if fresh is None or fresh.effect is None else fresh.effect
     smaller, larger = (b, a) if question.sign < 0 else (a, b)  # the effect is a share of the larger one
+    if effect is None:
+        return f"only {smaller} has a value, {larger} has none"
     return f"{_size(effect, question.is_fraction)} smaller with {smaller} than with {larger}".strip()
 
 
@@ -178,9 +183,19 @@ def class_of(made: Challenge, kind: Class) -> list[AnsweredVariation]:
     return [one for one in made.found if one.variation.kind == kind]
 
 
+def is_kept(made: Challenge, one: AnsweredVariation) -> bool:
+    """Return True if a variation does not change the answer: also if only the same side works as in the asked case."""
+    return _word(one) in KEPT or _is_as_asked(made, one)
+
+
+def _is_as_asked(made: Challenge, one: AnsweredVariation) -> bool:
+    works = made.fresh.works if made.fresh else None
+    return works is not None and one.judged is not None and one.judged.works == works
+
+
 def _all_kept(made: Challenge, kind: Class) -> bool:
     found = class_of(made, kind)
-    return bool(found) and all(one.judged and one.judged.word in KEPT for one in found)
+    return bool(found) and all(is_kept(made, one) for one in found)
 
 
 def _of_class(made: Challenge, kind: Class) -> Iterator[str]:
@@ -225,7 +240,7 @@ def _of_class(made: Challenge, kind: Class) -> Iterator[str]:
 
 
 def _settled(made: Challenge, found: Sequence[AnsweredVariation]) -> Iterator[str]:
-    kept = [one for one in found if _word(one) in _FULL]
+    kept = [one for one in found if _word(one) in _FULL or _is_as_asked(made, one)]
     if len(kept) == len(found):
         yield f"Settled numerically ({'; '.join(one.variation.label for one in found)})."
         return

@@ -129,7 +129,8 @@ def _text(cell: Number, scale: float) -> Written:
 def decimals(median: float, low: float | None = None, high: float | None = None) -> int:
     """Return to how many decimals a median is given: to the second digit of the half width of its interval.
 
-    At most six digits; three without an interval.
+    At most six digits; three without an interval. Within these, the ends of an interval without 0
+    are not rounded to 0.
     """
     finite = [value for value in (low, median, high) if value is not None and math.isfinite(value)]
     half = (max(finite) - min(finite)) / (2.0 if len(finite) == 3 else 1.0) if finite else 0.0
@@ -138,7 +139,10 @@ def decimals(median: float, low: float | None = None, high: float | None = None)
         return 0
     leading = math.floor(math.log10(size))
     wanted = 1 - math.floor(math.log10(half)) if half > 0.0 else _DIGITS - 1 - leading
-    return max(0, min(wanted, _MOST_DIGITS - 1 - leading))
+    most = _MOST_DIGITS - 1 - leading
+    has_zero = min(finite) <= 0.0 <= max(finite)
+    first = 0 if has_zero else -math.floor(math.log10(min(map(abs, finite))))
+    return max(0, min(wanted, most), first if first <= most else 0)
 
 
 def _fixed(value: float, places: int) -> str:

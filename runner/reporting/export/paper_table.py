@@ -4,6 +4,7 @@ from collections.abc import Sequence
 from typing import NamedTuple
 
 import numpy as np
+from numpy.typing import NDArray
 
 from runner.base.arrays import FloatArray
 from runner.base.quantities import ROUNDING
@@ -60,11 +61,13 @@ class Sample(NamedTuple):
         median: The median with its interval; without one if its ends are equal.
         n: Number of values.
         lost: Number of values beyond every number.
+        undefined: Number of repetitions of runs that do not define the metric.
     """
 
     median: Number
     n: int
     lost: int
+    undefined: int = 0
 
 
 def summarize(values: FloatArray) -> Sample:
@@ -99,7 +102,10 @@ def of_sweep(
     pooled = pool(measurements, by, where)
     rows = pooled.measurements
     names = choose(rows).metrics if metrics is None else rows.named(metrics)
-    samples = [[summarize(rows.values[name][row]) for name in names] for row in range(len(rows.hashes))]
+    samples = [
+        [summarize(rows.values[name][row])._replace(undefined=_undefined(measurements, name, own)) for name in names]
+        for row, own in enumerate(pooled.cells)
+    ]
     notes = [*_of_numbers(samples, pooled.seeds), *_of_cells(measurements, pooled)]
     fixed = f"The same in all rows: {', '.join(rows.fixed)}." if rows.fixed else ""
     commits = [text for key, texts in rows.provenance.items() if key == "commit" for text in texts]
@@ -130,7 +136,10 @@ def of_run(run: Run, metrics: Sequence[str] | None = None) -> PaperTable:
         RunnerError: If a metric is none of the run's.
     """
     known = measure_run(run)
-    samples = {name: summarize(known.values[name][0]) for name in known.named(metrics)}
+    samples = {
+        name: summarize(known.values[name][0])._replace(undefined=_undefined(known, name, [0]))
+        for name in known.named(metrics)
+    }
     notes = _of_numbers([[sample] for sample in samples.values()], [1])
     if run.status != "ok":
         notes.append(f"The run {run.failure}.")
@@ -139,6 +148,12 @@ def of_run(run: Run, metrics: Sequence[str] | None = None) -> PaperTable:
     sources = [f"From: {run.provenance['command']}", f"Commit: {run.provenance['commit']}"]
     cells: list[list[Cell]] = [[title(name), known.units[name], sample.median] for name, sample in samples.items()]
     return PaperTable(Table("", ["metric", Column("unit", "unit"), *numbers("")], cells), notes, sources)
+
+
+def _undefined(measurements: Measurements, name: str, cells: Sequence[int] | NDArray[np.intp]) -> int:
+    """Return the number of repetitions of some cells whose runs do not define a metric."""
+    mask = measurements.undefined.get(name)
+    return 0 if mask is None else int(mask[cells].sum())
 
 
 def _of_numbers(samples: Sequence[Sequence[Sample]], seeds: Sequence[int]) -> list[str]:
@@ -163,11 +178,13 @@ def _of_numbers(samples: Sequence[Sequence[Sample]], seeds: Sequence[int]) -> li
     else:
         notes.append("n counts the repetitions behind a median.")
     lost = sum(cell.lost for cell in cells)
-    if lost:
-        notes.append(
-            f"{lost} of {sum(cell.n for cell in cells)} values are missing, as a repetition failed or never got "
-            "there; they count as beyond every number (∞)."
-        )
+    undefined = sum(cell.undefined for cell in cells)
+    every = undefined + sum(cell.n for cell in cells)
+    reasons = [
+        (lost, "as a repetition failed or never got there; they count as beyond every number (∞)"),
+        (undefined, "as the runs do not define their metric (–)"),
+    ]
+    notes += [f"{count} of {every} values are missing, {reason}." for count, reason in reasons if count]
     if any(cell.median.is_rounding for cell in cells):
         notes.append(f"0 stands for what is below {ROUNDING:g} in SI units: rounding of the arithmetic.")
     return notes

@@ -5,7 +5,7 @@ from collections.abc import Sequence
 import numpy as np
 
 from runner.base.errors import RunnerError
-from runner.base.quantities import format_range, label_with_unit
+from runner.base.quantities import format_range, label_with_unit, quantity
 from runner.base.sanitize import few
 from runner.reporting.answers import EXPLAINED, HEADER, PAIRS, Answer
 from runner.reporting.charts.figure import spaced_indices
@@ -120,21 +120,33 @@ def made_equal(subject: Subject) -> str:
 
 
 def in_short(subject: Subject) -> str:
-    """Return the first answer, as a command that made a sweep ends with it; else the range of medians, and why."""
+    """Return the first answer, as a command that made a sweep ends with it.
+
+    Without one, return the range of the medians, the number of cells without a median, and why there is no answer.
+    """
     answers = find_answers(subject)
     if len({one.names for one in answers}) == 1:
         return sentences(answers)[0]
     found = range_told(subject)
-    return f"{found[0]}: medians from {found[1]}. {too_few(subject)}".rstrip() if found else ""
+    if not found:
+        return ""
+    cells, known = len(subject.measurements.hashes), len(subject.ranked)
+    has = "has" if cells - known == 1 else "have"
+    without = f"; {cells - known} of {cells} cells {has} none" if known < cells else ""
+    return f"{found[0]}: median{'' if known == 1 else 's from'} {found[1]}{without}. {too_few(subject)}".rstrip()
 
 
 def range_told(subject: Subject) -> tuple[str, str] | None:
-    """Return the first metric and the range of its medians over the cells, as strings; None if nothing is ranked."""
+    """Return the first metric and the range of its medians over the cells, as strings; None if nothing is ranked.
+
+    If only one cell has a median, the range is that median.
+    """
     if not (subject.ranked and subject.axes):
         return None
     metric = subject.metrics[0]
     ends = [float(subject.medians[metric][cell]) for cell in (subject.ranked[0], subject.ranked[-1])]
-    return title(metric), format_range(ends[0], ends[1], subject.measurements.units[metric])
+    unit = subject.measurements.units[metric]
+    return title(metric), quantity(ends[0], unit) if len(subject.ranked) == 1 else format_range(ends[0], ends[1], unit)
 
 
 def too_few(subject: Subject) -> str:

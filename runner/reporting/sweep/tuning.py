@@ -167,7 +167,9 @@ def tuning_document(tuning: Tuning, folder: Path) -> Document:
 
 def _compared(subject: TuningSubject) -> Section | None:
     answers, _ = subject.on_fresh_seed
-    return Section("Default and tuned on a fresh seed", answer_blocks(answers)) if answers else None
+    drawn = any(not one.comparison.exact for one in answers)
+    heading = "Default and tuned on a fresh seed" if drawn else "Default and tuned"
+    return Section(heading, answer_blocks(answers)) if answers else None
 
 
 def compare_on_fresh_seed(tuning: Tuning) -> tuple[list[Answer], list[str]]:

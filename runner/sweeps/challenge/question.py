@@ -41,7 +41,7 @@ class Question:
         unit: Its unit.
         sides: A and B; the answer describes B against A.
         sign: -1 if B is smaller, 1 if it is larger, 0 if no difference was shown.
-        size: Difference of B from A relative to the larger median.
+        size: Difference of B from A relative to the larger median; None if only one side has a value.
         error: Integration error in the difference; None if it is unknown.
         seed: The first seed that the stored result does not use.
         at: The condition in which it is asked, such as "robot=macro"; empty for the only one.
@@ -54,7 +54,7 @@ class Question:
     unit: str
     sides: tuple[Side, Side]
     sign: int
-    size: float
+    size: float | None
     error: float | None
     seed: int
     at: str

@@ -186,7 +186,7 @@ class _Runner:
                 raise RunnerError(f"challenge: the asked case cannot be asked again: {one.reason}.")
             self._scale = _scale(found)
             asked = AskedEffect(question.sign, 0.0, self._scale, question.is_fraction)
-            (fresh,) = judge([one], replace(asked, size=found.difference / asked.of(found)), ALPHA)
+            (fresh,) = judge([one], replace(asked, size=_finite(found.difference / asked.of(found))), ALPHA)
             level = ALPHA / LOOKS if question.sign else ALPHA
             back = came_back(found, question.sign, level, question.is_fraction) is not None
             if back or not question.sign or found.exact:
@@ -194,7 +194,7 @@ class _Runner:
         return replace(self._made, fresh=fresh, came_back=back)
 
     def _asked(self, made: Challenge) -> AskedEffect:
-        size = made.fresh.effect if made.fresh and made.fresh.effect is not None else 0.0
+        size = _finite(made.fresh.effect) if made.fresh and made.fresh.effect is not None else 0.0
         return AskedEffect(self._question.sign, size, self._scale, self._question.is_fraction)
 
     @property
@@ -326,6 +326,11 @@ class _Runner:
 
 def _tell(text: str) -> None:
     print(f"runner: {text}", file=sys.stderr)
+
+
+def _finite(size: float) -> float:
+    """Return the size of an effect; 0 if only one side has a value, whose answer no share of its size can end."""
+    return size if math.isfinite(size) else 0.0
 
 
 def _effect(one: AnsweredVariation) -> float:

@@ -96,6 +96,14 @@ class Tuning:
     fresh: Fresh | None = None
 
 
+def count_trials(trials: Sequence[Trial]) -> str:
+    """Return the numbers of trials and of failed ones; also that of their runs if some trials have the same one."""
+    failed = sum(bool(trial.failure) for trial in trials)
+    made = [trial.run for trial in trials if trial.run]
+    shared = f"; {len(set(made))} runs, because equal trials share one" if len(set(made)) < len(made) else ""
+    return f"{len(trials)} trials, {failed} of them failed{shared}"
+
+
 def at_ends(tuning: Tuning) -> list[str]:
     """Return a sentence for each end of a range that is near the value of a chosen trial."""
     study, numbers = tuning.study, best(tuning.trials, tuning.study.objectives)

@@ -6,6 +6,7 @@ from collections import Counter
 from dataclasses import replace
 from types import SimpleNamespace
 
+import numpy as np
 import pytest
 from support.engines import ASKED
 
@@ -20,6 +21,7 @@ from runner.reporting.stored import compose_report
 from runner.statistics.scope import first_pairs
 from runner.sweeps.challenge.case import Case, check_case
 from runner.sweeps.challenge.combinations import combine
+from runner.sweeps.challenge.drawn import read_drawn
 from runner.sweeps.challenge.families import FAMILIES, NotApplicableError, _duration, _step
 from runner.sweeps.challenge.question import CLASSES
 from runner.sweeps.challenge.stored import open_challenge
@@ -361,3 +363,40 @@ def test_a_share_of_the_larger_side_says_which_one_is_smaller(sign, said):
     sides = [SimpleNamespace(name=name) for name in "ab"]
     question = SimpleNamespace(sides=sides, sign=sign, size=0.29, is_fraction=False)
     assert answer_text(SimpleNamespace(question=question, fresh=None)) == f"29 % {said}"
+
+
+FAILS = ("robot=macro", "controller=computed_torque", "trajectory=goal", "duration=0.8", "controller.period=10ms,20ms")
+BUDGET = ("--budget", 2, "-j", 1, "--metrics", "settling_time")
+
+
+@pytest.mark.costs(2)
+@pytest.mark.parametrize("noise", [(), ("noise=thesis", "repetitions=6")], ids=["exact", "drawn"])
+def test_an_answer_of_which_one_side_has_no_value(cli, noise, tmp_path):
+    runner.sweep(*FAILS, *noise, workers=0)
+    ending = cli("challenge", "latest", *BUDGET)
+    assert ending.code == 0
+    said = "only controller.period=0.01 has a value, controller.period=0.02 has none"
+    assert said in ending.out
+    assert "Settled numerically (the engine mujoco; the engine rk4)." in ending.out
+    made = open_challenge(ending.folder)
+    assert made.question.size is None
+    assert {one.judged.word for one in made.found if one.judged} == {"only one works"}
+    document = compose_report([made.folder], output=tmp_path)[0]
+    assert said in document.abstract
+    assert not faulty(document)
+    assert "damaged" not in cli("results").out
+    again = cli("check", made.folder, "--require-scope", "numbers")
+    assert again.out.splitlines()[-1] == "not shown to hold for numbers: 1"  # the one that the budget cut
+
+
+def _works_always(run, metric):
+    nothing = np.zeros(run.repetitions, dtype=bool)
+    return replace(read_drawn(run, metric), lost=nothing, spoilt=nothing)
+
+
+def test_no_share_of_an_infinite_difference_ends_an_answer(cli, monkeypatch):
+    runner.sweep(*FAILS, workers=0)
+    monkeypatch.setattr("runner.sweeps.challenge.bench.read_drawn", _works_always)
+    out = cli("challenge", "latest", *BUDGET).out
+    assert "Settled numerically (the engine mujoco; the engine rk4)." in out
+    assert "inf" not in out

@@ -6,6 +6,9 @@ import numpy as np
 import pytest
 from fixtures.stored import DRAWN
 
+from runner.reporting import outline
+from runner.reporting.document import Table
+from runner.reporting.run_report import run_document
 from runner.store import open_run
 
 BOUND = "spec.metrics.cross_track_error.max"
@@ -144,3 +147,20 @@ def test_a_metric_that_no_repetition_defines_breaks_its_bound_everywhere(cli):
     text = (cli("report", swept.folder).folder / "report.html").read_text()
     assert "has the metric of the bound" not in text
     assert "2 of 2 failed, 1 (0.158 to 1)" in text
+
+
+def test_a_metric_that_was_never_measured_is_the_reason_of_a_broken_bound(cli):
+    ending = cli("robot=macro", "plant=rk4", "trajectory=goal", "duration=0.05", "noise=thesis", "repetitions=2",
+                 "spec.metrics.steady_state_error.max=5mm", "spec.metrics.peak_torque.max=1e6")  # fmt: skip
+    said = "steady-state error at most 5 mm: no value in 2 of 2 repetitions  0 of 2"
+    assert said in ending.err
+    assert ending.err.count("no value in") == 1
+    rows = cli("check", ending.folder).out.splitlines()
+    assert rows[1].endswith("broken: no value in 2 of 2 repetitions")
+    assert rows[2].endswith("good")
+    (table,) = [each for each in outline.blocks(run_document(open_run(ending.folder))) if "Clopper" in caption(each)]
+    assert table.rows[0][0] == "steady-state error at most 5 mm: no value in 2 of 2 repetitions"
+
+
+def caption(block):
+    return block.caption if isinstance(block, Table) else ""

@@ -64,13 +64,16 @@ def test_a_selection_is_csv_unless_told_otherwise(cli, sweep):
 
 def test_cells_are_chosen_by_any_value_of_their_configs(cli, sweep):
     swept = cli("table", sweep, "--metrics", "peak_torque", "--where", "controller=computed_torque").out
-    values = ("controller.kind=computed_torque", "robot.name=macro", "duration=50ms")
+    values = ("controller.kind=computed_torque", "robot.name=macro", "duration=50ms", "robot=macro", "plant=bullet")
     by_config = [text for value in values for text in ("--where", value)]
     assert cli("table", sweep, "--metrics", "peak_torque", *by_config).out == swept
     both = cli("table", sweep, "--metrics", "peak_torque", "--by", "controller", "--where", "robot.name=macro")
     assert len(both.out.splitlines()) == 3
     ending = cli("table", sweep, "--where", "robot.name=mini")
     assert (ending.code, ending.err) == (2, "runner: --where robot.name: unknown value 'mini'. Allowed: macro.\n")
+    assert "--where robot: unknown value 'mini'. Allowed: macro." in cli("table", sweep, "--where", "robot=mini").err
+    unstored = cli("table", sweep, "--where", "noise=thesis").err
+    assert "--where noise: a group whose option is not stored. Allowed: noise.position, " in unstored
     assert "unknown value '50mm'. Allowed: 0.05." in cli("table", sweep, "--where", "duration=50mm").err
     assert "--where: unknown axis 'robot.nam'" in cli("table", sweep, "--where", "robot.nam=macro").err
 
@@ -113,25 +116,23 @@ def test_axes_are_for_sweeps(cli, a_run):
     assert f"--by and --where: {a_run} is a run. Allowed: only for sweeps." in ending.err
 
 
-def test_a_sweep_that_is_not_whole_tells_what_is_missing(cli, tmp_path):
+@pytest.fixture
+def part(tmp_path):
+    """A sweep of two cells; one is stored."""
     done = run(f"controller={CONTROLLERS[0]}", *CASE[:-1], f"outputs={tmp_path}/o")
     jobs = [(("controller=computed_torque",), done.hash), (("controller=operational_space",), "0" * 24)]
-    folder = write_sweep(tmp_path / "o", jobs, "runner -m controller=computed_torque,operational_space")
-    ending = cli("table", folder, "--format", "markdown")
-    assert ending.code == 2
-    assert f"1 of 2 cells of {folder} are not stored; continue with: runner -m controller=" in ending.err
+    return write_sweep(tmp_path / "o", jobs, "runner -m controller=computed_torque,operational_space")
 
 
-def test_a_sweep_that_runs_is_not_started_again(cli, tmp_path):
-    """Fault 13: a table of a running sweep advised to start it again."""
-    done = run(f"controller={CONTROLLERS[0]}", *CASE[:-1], f"outputs={tmp_path}/o")
-    jobs = [(("controller=computed_torque",), done.hash), (("controller=operational_space",), "0" * 24)]
-    folder = write_sweep(tmp_path / "o", jobs, "runner -m controller=computed_torque,operational_space")
-    with at_work(folder):
-        ending = cli("table", folder)
+@pytest.mark.parametrize("command", ["report", "check", "figures", "challenge", "table"])
+def test_all_commands_say_the_same_of_a_sweep_that_lacks_runs(cli, part, command):
+    ending = cli(command, part)
     assert ending.code == 2
-    assert f"{folder} is running, 1 of 2 cells are stored; wait, or watch it with: runner status" in ending.err
-    assert "runner -m" not in ending.err
+    assert f"1 of 2 cells of {part} are not stored; continue with: runner -m controller=" in ending.err
+    with at_work(part):
+        ending = cli(command, part)
+    assert ending.code == 2
+    assert f"{part} is running, 1 of 2 cells are stored; wait, or watch it with: runner status" in ending.err
 
 
 @pytest.mark.parametrize(

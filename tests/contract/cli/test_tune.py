@@ -7,6 +7,7 @@ import shlex
 import pytest
 from support.engines import ASKED
 
+from runner.reporting.results import rows_of
 from runner.store import open_run
 
 SHORT = ("robot=macro", "trajectory=quintic", "duration=0.05", "hydra.sweeper.workers=0")
@@ -60,7 +61,7 @@ def test_the_best_is_the_same_run_again_and_other_commands_take_a_tuning_for_a_s
     assert run.name in before
     assert float(f"{open_run(run).metrics['peak_torque'].median:.5g}") == float(best.split()[2])
     (folder,) = (tmp_path / "outputs" / "tunings").iterdir()
-    assert cli("status", folder).out.startswith("4 runs: 4 done, 0 left\n")
+    assert cli("status", folder).out.startswith("4 trials, 0 of them failed\n4 runs: 4 done, 0 left\n")
     assert cli("table", folder).code == 0
     assert (folder / "table.csv").read_text().count("\n") == 5
     assert cli("check", folder, "--save-baseline", tmp_path / "baseline.yaml").code == 0
@@ -84,6 +85,20 @@ def test_a_tuning_in_which_every_trial_failed_has_a_report_too(cli):
     assert ending.code == 1
     assert "2 trials, 2 of them failed" in ending.err
     assert (ending.folder / "report.pdf").exists()
+
+
+@pytest.mark.usefixtures("no_report")
+def test_all_commands_count_the_same_trials_and_one_run_of_equal_ones(cli, tmp_path):
+    ratio = "controller.damping_ratio=range(0.5,1.5,0.5)"
+    said = "6 trials, 6 of them failed; 2 runs, because equal trials share one"
+    ending = cli("tune", *SHORT, "trajectory=goal", ratio, "--minimize", "settling_time", "--trials", 6)
+    assert f"runner: {said}\n" in ending.err
+    (folder,) = (tmp_path / "outputs" / "tunings").iterdir()
+    counts = cli("status", folder).out.splitlines()
+    assert counts[:2] == [said, "2 runs: 2 done, 0 left"]
+    assert counts[2].startswith("6 of 6 stored trials have caveats")
+    (listed,) = [row for row in rows_of(tmp_path / "outputs") if row.entry.kind == "tuning"]
+    assert (listed.runs, listed.failed) == ("6 x 1", 6)
 
 
 @pytest.mark.parametrize(

@@ -96,6 +96,7 @@ def test_a_shaper_and_a_notch_stand_below_the_title(tmp_path):
         (("noise.position=1mrad",), "no torque limits, noise.position=0.001"),
         (("noise=thesis",), "no torque limits, noise thesis"),
         (("noise=thesis", "noise.position=2mrad"), "no torque limits, noise thesis, noise.position=0.002"),
+        (("torque_limits.max=20",), "noise none, torque_limits.max=20.0"),
         (("torque_limits=thesis", "torque_limits.max=20"), "torque limits thesis, noise none, torque_limits.max=20.0"),
     ],
 )

@@ -27,6 +27,11 @@ def column(unit, rows):
         (1.0, 1.0 - 1e-12, 1.0 + 1e-12, 5),  # six digits and no more
         (5.0, 4.0, np.inf, 1),
         (0.0, None, None, 0),
+        (13.2, 0.187, np.inf, 1),  # 13.2 (0.2 to ∞), not 13 (0 to ∞)
+        (13.2, -0.187, np.inf, 0),
+        (13.2, 0.0, np.inf, 0),
+        (13.2, 1e-4, np.inf, 4),
+        (13.2, 1e-5, np.inf, 0),  # more than six digits
     ],
 )
 def test_an_interval_decides_about_the_digits(median, low, high, expected):

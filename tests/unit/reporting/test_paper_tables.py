@@ -75,6 +75,14 @@ def test_failures_and_caveats_are_told():
     assert "1 of 12 cells have caveats: saturation." in text
 
 
+def test_values_of_undefined_metrics_are_counted_as_missing():
+    sweep = by_hand()
+    sweep.values["peak_torque"][:3] = np.nan
+    undefined = np.isnan(sweep.values["peak_torque"])
+    text = markdown(table(replace(sweep, undefined={"peak_torque": undefined})))
+    assert "12 of 96 values are missing, as the runs do not define their metric (–)." in text
+
+
 def test_counts_stand_in_a_column_where_they_differ():
     sweep = by_hand()
     for values in sweep.values.values():

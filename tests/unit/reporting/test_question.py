@@ -243,6 +243,20 @@ def test_of_several_values_the_first_six_are_told():
     assert in_short(subject).startswith("largest tracking error: medians from ")
 
 
+@pytest.mark.parametrize(
+    ("failed", "said"),
+    [
+        ((), "largest tracking error: medians from 1 to 3 m."),
+        ((2,), "largest tracking error: medians from 1 to 2 m; 1 of 3 cells has none."),
+        ((1, 2), "largest tracking error: median 1 m; 2 of 3 cells have none."),
+        ((0, 1, 2), ""),
+    ],
+)
+def test_cells_without_a_median_are_counted_and_one_median_is_no_range(failed, said):
+    metrics = {"max_tracking_error": lambda level: np.full(8, 1.0 + level)}
+    assert in_short(choose(measurements({"noise.position": [1e-4, 1e-3, 1e-2]}, metrics, failed))) == said
+
+
 def test_without_two_cells_that_share_their_seeds_nothing_is_asked():
     assert find_answers(sweep(lambda seed: drawn(8, seed), axes={"seed": [0.0, 1.0]})) == []
 
