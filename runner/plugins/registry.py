@@ -6,7 +6,7 @@ can add kinds: see runner/plugins/discovery.py.
 """
 
 import copy
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Mapping
 from importlib import import_module
 from types import ModuleType
 from typing import Concatenate, Generic, ParamSpec, Protocol, TypeVar
@@ -14,7 +14,7 @@ from typing import Concatenate, Generic, ParamSpec, Protocol, TypeVar
 from runner.base.errors import ConfigError, RunnerError, describe_part_error, nearest
 from runner.base.former_names import explain_value
 from runner.plugins.discovery import added_parts, load
-from runner.plugins.features import Commands, Features, read_features
+from runner.plugins.features import Commands, Features, check_commands, read_features
 from runner.schema.model import StrictModel
 
 
@@ -27,7 +27,6 @@ class KindConfig(Protocol):
         ...
 
 
-_METHODS: Mapping[Commands, str] = {"torque": "torque", "position": "joint_positions"}  # of a law, by its command
 C = TypeVar("C", bound=KindConfig, contravariant=True)
 P = ParamSpec("P")
 T = TypeVar("T")
@@ -114,23 +113,6 @@ class Kinds:
         return {point.name: point.value for point in added_parts(self.group)}
 
 
-def _check_commands(group: str, kind: str, loops: object, commands: Commands) -> None:
-    """Check that the laws of loops, if a part has any, have the method for their command.
-
-    Raises:
-        ConfigError: if one has only the method for the other command.
-    """
-    other: Commands = "torque" if commands == "position" else "position"
-    for loop in loops if isinstance(loops, Sequence) and commands in _METHODS else ():
-        law = getattr(loop, "controller", None)
-        if hasattr(law, _METHODS[other]) and not hasattr(law, _METHODS[commands]):
-            raise ConfigError(
-                f"{group}.kind: the module of '{kind}' has COMMANDS = \"{commands}\", and its law "
-                f"{type(law).__name__} has {_METHODS[other]} instead of {_METHODS[commands]}; "
-                f'write COMMANDS = "{other}" in the module'
-            )
-
-
 class Registry(Kinds, Generic[C, P, T]):
     """Kinds of one config group, and the construction of their parts.
 
@@ -170,7 +152,7 @@ class Registry(Kinds, Generic[C, P, T]):
         built = self.ask(config, make, *args, **kwargs)
         if self.guard is None or not self.is_user_supplied(config.kind):
             return built
-        _check_commands(self.group, config.kind, built, self.commands(config.kind))
+        check_commands(self.group, config.kind, built, self.commands(config.kind))
         return self.guard(built, config, *args, **kwargs)
 
     def ask(self, config: C, function: Callable[Concatenate[C, P2], A], *args: P2.args, **kwargs: P2.kwargs) -> A:

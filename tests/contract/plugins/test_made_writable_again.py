@@ -170,7 +170,9 @@ PATH = """
             self.start = start
         def sample(self, times):
             self.motion = np.zeros((len(times), 3, 3))
-            self.motion[:, 0] = self.start + np.outer(np.sin(times), [0.0, 0.0, -0.1])
+            waves = np.stack([np.sin(times), np.cos(times), -np.sin(times)], axis=1)
+            self.motion[:, :, 2] = -0.1 * waves
+            self.motion[:, 0] += self.start
             spoil(times)
             return self.motion
         def distance_to_path(self, points):

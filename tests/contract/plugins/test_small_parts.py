@@ -73,7 +73,7 @@ def signal(group, trace):
     return trace.contact.reading if group == "wrist_sensor" else trace.q
 
 
-def test_a_law_that_reads_the_wrist_sensor_takes_that_of_a_plug_in_by_three_keys(use):
+def test_a_law_that_reads_the_wrist_sensor_takes_that_of_a_plug_in_by_overrides(use):
     use("wrist_sensor", "weak_gauge")
     law = ("robot=meca500", "trajectory=quintic", "controller=admittance", "wrist_sensor=weak_gauge")
     with pytest.raises(ConfigError, match=r"controller\.sensor\.kind: found 'weak_gauge'; allowed: force_torque"):
