@@ -17,7 +17,7 @@ from runner.reporting.sweep.subject import Subject, key_label, spans_decades
 from runner.schema.bound import Bound
 from runner.statistics.spec import bounds_of, merge_histories, settings
 from runner.store import Sweep
-from runner.store.axes import Axis
+from runner.store.axes import Axis, group_cells
 from runner.store.drawn import draws_nothing
 
 _WIDE = 10.0  # times the lower end: of a probability with a higher upper end not even the magnitude is known
@@ -208,12 +208,21 @@ def _texts(failing: Failing) -> list[str]:
 
 
 def _table(subject: Subject, failing: Sequence[Failing]) -> Table:
-    """Return each cell with the probability of failing each bound, those that fail most often first."""
-    order = np.argsort(-np.nan_to_num(failing[-1].share), kind="stable")
+    """Return each cell with the probability of failing each bound, those that fail most often first.
+
+    Cells that differ only in the seed are counted together.
+    """
+    axes = [axis for axis in subject.axes if axis.name != maps.POOLED]
+    groups = [cells.tolist() for _, cells in group_cells(axes, np.arange(len(failing[-1].of)))]
+    pooled = [one.pooled(groups) for one in failing]
+    order = np.argsort(-np.nan_to_num(pooled[-1].share), kind="stable")
     shown = [int(order[place]) for place in spaced_indices(len(order), _MOST_ROWS)]
-    texts = [_texts(one) for one in failing]
-    rows = [[subject.cell_name(cell), *(own[cell] for own in texts)] for cell in shown]
+    texts = [_texts(one) for one in pooled]
+    names = [subject.cell_name(cells[0], axes) or "all seeds" for cells in groups]
+    rows = [[names[place], *(own[place] for own in texts)] for place in shown]
     caption = "Repetitions that failed, with the probability of failing and its 95 % interval."
+    if len(axes) < len(subject.axes):
+        caption += " Cells that differ only in the seed are counted together."
     if len(shown) < len(order):
         caption += f" {len(shown)} of {len(order)} cells, evenly chosen by how often they fail."
     return Table(caption, ["cell", *(one.name for one in failing)], rows)

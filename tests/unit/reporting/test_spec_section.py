@@ -76,6 +76,18 @@ def test_seeds_are_pooled():
     np.testing.assert_allclose(figure.panels[0].series[0].high, [count_share(2, 200).high, count_share(60, 200).high])
 
 
+def test_the_table_pools_seeds_like_the_figures():
+    axes = {"noise.position": [1e-4, 1e-3], "seed": [0.0, 1.0]}
+    (table,) = blocks(spec.section(choose(measurements(axes, {"rms": failing(1, 30)})), swept(SPEC)), Table)
+    assert [row[0] for row in table.rows] == ["noise.position=0.001", "noise.position=0.0001"]
+    assert [row[1].partition(",")[0] for row in table.rows] == ["60 of 200 failed", "2 of 200 failed"]
+    assert "Cells that differ only in the seed are counted together." in table.caption
+    (table,) = blocks(
+        spec.section(choose(measurements({"seed": [0.0, 1.0]}, {"rms": failing(1, 30)})), swept(SPEC)), Table
+    )
+    assert [row[:1] for row in table.rows] == [["all seeds"]]
+
+
 def test_the_table_has_each_cell_with_its_interval_those_that_fail_most_first():
     (table,) = blocks(spec.section(one_axis(), swept(SPEC)), Table)
     assert [row[0] for row in table.rows] == ["noise.position=0.01", "noise.position=0.001", "noise.position=0.0001"]
