@@ -23,7 +23,7 @@ from runner.base.dotted_keys import check_references
 from runner.base.errors import ConfigError
 from runner.base.paths import conf_dir
 from runner.base.sanitize import quoted
-from runner.config.compose.composition_errors import COMPOSITION_ERRORS, explain
+from runner.config.compose.composition_errors import COMPOSITION_ERRORS, explain_options
 from runner.config.compose.files import groups, user_overrides
 from runner.config.compose.kept_options import files_of, key_of, read_options, write_options
 from runner.config.compose.overrides import force, prepare
@@ -74,6 +74,7 @@ class Composer:
         """
         lines = [*user_overrides(), *prepare(overrides)]
         known = groups(self.config_dirs)
+        options: list[Override] = []
         try:
             parsed = parse(lines)
             for override in parsed:
@@ -86,7 +87,8 @@ class Composer:
             put_values(config, values)
             check_composed(config)
         except COMPOSITION_ERRORS as error:
-            raise explain(error, self.config_dirs) from None
+            chosen = {each.key_or_group: each.value() for each in options}
+            raise explain_options(error, chosen, self.config_dirs) from None
         except (TypeError, KeyError, IndexError, AttributeError, AssertionError) as error:
             found = f"{type(error).__name__} {error}".strip()
             raise ConfigError(f"Hydra cannot compose the config: {found}; look at what is unusual in it") from error

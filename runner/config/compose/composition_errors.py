@@ -1,7 +1,7 @@
 """Messages for errors of Hydra, OmegaConf and YAML."""
 
 import re
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from pathlib import Path
 
 import yaml
@@ -25,6 +25,32 @@ _NO_GROUP = re.compile(r".* trying to access (\S+): node `(\S+)` is not a contai
 COMPOSITION_ERRORS = (HydraException, OmegaConfBaseException, yaml.YAMLError, ValueError, OSError, RecursionError)
 
 
+def explain_options(error: Exception, chosen: Mapping[str, object], config_dirs: Sequence[Path] = ()) -> ConfigError:
+    """Return the same as `explain`; if an option does not exist, with all chosen options that do not exist.
+
+    Args:
+        error: The error.
+        chosen: The chosen option of each group.
+        config_dirs: Config folders of the user.
+    """
+    first = explain(error, config_dirs)
+    if not isinstance(error, MissingConfigException):
+        return first
+    unknown = [
+        _unknown_option(group, option, known)
+        for group, option in chosen.items()
+        if isinstance(option, str) and option not in (known := group_options(group, config_dirs))
+    ]
+    return ConfigError([*first.problems, *(text for text in unknown if text not in first.problems)])
+
+
+def _unknown_option(group: str, option: str, known: Mapping[str, str]) -> str:
+    former = explain_value(group, option)
+    return (
+        f"{group}: {former}" if former else f"{group}: no '{option}'{nearest(option, known)}; known: {', '.join(known)}"
+    )
+
+
 def explain(error: Exception, config_dirs: Sequence[Path] = ()) -> ConfigError:
     """Return an error of Hydra, OmegaConf or YAML as ConfigError with a message for users."""
     if isinstance(error, HydraException) and not str(error) and isinstance(error.__cause__, OmegaConfBaseException):
@@ -34,10 +60,8 @@ def explain(error: Exception, config_dirs: Sequence[Path] = ()) -> ConfigError:
     if isinstance(error, MissingConfigException) and error.missing_cfg_file:
         group, _, option = str(error.missing_cfg_file).partition("/")
         known = group_options(group, config_dirs)
-        if former := explain_value(group, option):
-            return ConfigError(f"{group}: {former}")
-        if known:
-            return ConfigError(f"{group}: no '{option}'{nearest(option, known)}; known: {', '.join(known)}")
+        if known or explain_value(group, option):
+            return ConfigError(_unknown_option(group, option, known))
     if isinstance(error, OverrideParseException):
         found = one_line(f"'{error.override}'", VALUE)
         text = next(line for line in str(error).splitlines() if not line.startswith(_OF_HYDRA_1_4))

@@ -104,6 +104,18 @@ def test_what_does_not_compose_is_said_in_one_line(cli, tmp_path, override, mess
     assert f"runner: {raised.value}\n" == ending.err
 
 
+def test_all_options_that_do_not_exist_are_in_one_message(cli):
+    ending = cli("robot=minni", "controller=computd", "noise=thesis", "trajectory=quintc", "repetitons=3")
+    assert ending.code == 2
+    head, *problems = ending.err.splitlines()
+    assert head == "runner: 3 problems in the config:"
+    assert [text.partition(";")[0] for text in problems] == [
+        "  - robot: no 'minni' (did you mean mini?)",
+        "  - controller: no 'computd' (did you mean computed_torque?)",
+        "  - trajectory: no 'quintc' (did you mean quintic?)",
+    ]
+
+
 @pytest.mark.parametrize(
     ("content", "message"),
     [
