@@ -175,6 +175,7 @@ def _conclusions(made: Mapping[str, _Reproduced]) -> str:
 
 
 def _reproduce_study(study: "Study", options: Namespace) -> _Reproduced:
+    from runner.papers.study.asked import check_chosen
     from runner.papers.study.chapters import Chapters
     from runner.papers.study.check import formulas_at, problems
     from runner.papers.study.claims import late_claims
@@ -182,6 +183,8 @@ def _reproduce_study(study: "Study", options: Namespace) -> _Reproduced:
     from runner.papers.study.report import study_document
     from runner.reporting.markup import literal
 
+    if options.challenge:
+        check_chosen(study, options.challenge)
     study.measure(options.output)
     runs, calibrations = make_all(study, options.output, options.overrides, options.command)
     missing = runs.missing | calibrations.missing

@@ -1,17 +1,25 @@
 """Findings of a study, and verdicts on its printed numbers, as a challenge asks them: conditions, runs, choices."""
 
+import re
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass
 from functools import partial
+from typing import get_args
 
 from runner.base.errors import RunnerError, nearest
-from runner.papers.reporting.published_claims import Verdict
-from runner.papers.study.chapters import Chapters
+from runner.papers.reporting.published_claims import CLAIMS, Verdict, load_claims
+from runner.papers.study.chapters import Chapters, chapter_text
 from runner.papers.study.claims import judge_number
 from runner.papers.study.measured import ANSWERS, Condition, Measured, findings
 from runner.papers.study.prose.reader import Box
 from runner.papers.study.results import MissingError
+from runner.papers.study.study import Study
 from runner.reporting.document import Document
+
+_BRACES = re.compile(r"\{\{.*?\}\}", re.S)
+_BOX = re.compile(r"^::: *\w+ +(.+)$", re.M)
+_VALUE = "\0"
+_ADDED = 2  # chapters that a report may have before its own: on a profile, and on missing runs
 
 
 @dataclass(frozen=True)
@@ -33,6 +41,47 @@ class AskedFinding:
     runs: Sequence[str]
     about: Sequence[str] = ()
     wider: bool = False
+
+
+def check_chosen(study: Study, chosen: str) -> None:
+    """Check the choice of findings before the runs of a study are made, as far as its files tell.
+
+    Values in a title are not known yet: one word of the choice in such a title is enough.
+
+    Args:
+        study: The study.
+        chosen: Number of a section, or words of a title; empty for all findings.
+
+    Raises:
+        RunnerError: if there is no such finding.
+    """
+    chapters, titles = len(study.manifest.chapters), [*_titles_of_claims(study), *_titles_of_boxes(study)]
+    if chosen.partition(".")[0].isdecimal():
+        known = int(chosen.partition(".")[0]) <= chapters + _ADDED
+    else:
+        words = chosen.lower().split()
+        known = any(
+            chosen.lower() in title.lower() or (_VALUE in title and any(word in title.lower() for word in words))
+            for title in titles
+        )
+    if not known:
+        raise _no_finding(chosen, titles)
+
+
+def _titles_of_boxes(study: Study) -> Iterator[str]:
+    """Yield the title of each finding in Markdown, with a mark instead of a value."""
+    for file in study.manifest.files():
+        if file.endswith(".md"):
+            text = _BRACES.sub(_VALUE, chapter_text(study.folder / file))
+            yield from _BOX.findall(text)
+
+
+def _titles_of_claims(study: Study) -> Iterator[str]:
+    claims = load_claims(study.folder) if (study.folder / CLAIMS).is_file() else []
+    for claim in claims:
+        for words in (study.manifest.presets or {"": ""}).values():
+            under = f", {words}" if words else ""
+            yield from (f"Claim {claim.number}{under}: {verdict}" for verdict in get_args(Verdict))
 
 
 def list_asked(chapters: Chapters, document: Document, chosen: str = "") -> list[AskedFinding]:
@@ -112,9 +161,12 @@ def _choose(every: Sequence[AskedFinding], chosen: str) -> list[AskedFinding]:
     found = [one for one in every if not chosen or one.number == chosen or one.number.startswith(f"{chosen}.")]
     found = found or [one for one in every if chosen.lower() in one.title.lower()]
     if not found:
-        known = [text for one in every for text in (one.number, one.title)]
-        raise RunnerError(
-            f"--challenge: no finding '{chosen}'{nearest(chosen, known)}. Allowed: the number of a section, or words "
-            "of a title."
-        )
+        raise _no_finding(chosen, [text for one in every for text in (one.number, one.title)])
     return found
+
+
+def _no_finding(chosen: str, known: Sequence[str]) -> RunnerError:
+    return RunnerError(
+        f"--challenge: no finding '{chosen}'{nearest(chosen, known)}. Allowed: the number of a section, or words of a "
+        "title."
+    )

@@ -2,7 +2,9 @@
 
 import pytest
 
+from runner.base.errors import RunnerError
 from runner.papers.study import challenge
+from runner.papers.study.asked import check_chosen
 from runner.papers.study.chapters import Chapters
 from runner.papers.study.execute import make_all
 from runner.papers.study.items import Way
@@ -190,6 +192,24 @@ def test_bad_input_is_one_sentence(cli, engines, arguments, message):
     ending = cli("reproduce", *arguments)
     assert ending.code == 2
     assert ending.err.splitlines()[-1].startswith(f"runner: {message}")
+
+
+@pytest.mark.parametrize("chosen", ["9.7", "no such finding", "claim 3"])
+def test_an_unknown_finding_is_refused_before_anything_runs(cli, engines, chosen):
+    ending = cli("reproduce", "two_engines", HERE, "--challenge", chosen)
+    assert ending.code == 2
+    assert f"--challenge: no finding '{chosen}'" in ending.err
+    assert not any((engines.parent / "outputs" / "runs").iterdir())
+
+
+def test_words_of_a_title_with_values_are_allowed_before_the_runs(engines):
+    chapter = engines / "one.md"
+    chapter.write_text(chapter.read_text().replace("engines differ\n", "engines differ by {{\napart }} at most\n"))
+    study = load_study(str(engines))
+    for chosen in ("", "1", "1.1", "the ENGINES differ", "engines differ by 0.3 mm"):
+        check_chosen(study, chosen)
+    with pytest.raises(RunnerError, match="--challenge: no finding 'foo'"):
+        check_chosen(study, "foo")
 
 
 def test_an_unknown_choice_of_a_finding_names_the_nearest(cli, engines):
