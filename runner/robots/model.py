@@ -219,10 +219,12 @@ class RobotModel:
 
     @property
     def usual_range(self) -> FloatArray:
-        """Position limits, for revolute joints clipped to one turn about zero if possible, shape (2, nq)."""
-        limits = self.position_limits
+        """Position limits, for revolute joints clipped to one turn, about zero if possible, shape (2, nq)."""
+        lower, upper = limits = self.position_limits
         turn = np.clip(limits, -np.pi, np.pi)
-        return np.where(self.prismatic | (turn[0] == turn[1]), limits, turn)
+        from_end = np.maximum(lower, upper - 2.0 * np.pi), np.minimum(upper, lower + 2.0 * np.pi)
+        beside = np.where(np.isfinite(limits), limits, from_end)
+        return np.where(self.prismatic, limits, np.where(turn[0] == turn[1], beside, turn))
 
     @property
     def joint_units(self) -> tuple[str, ...]:

@@ -231,6 +231,17 @@ def test_limits_are_read():
     np.testing.assert_array_equal(model.effort_limits, [3.0])
 
 
+@pytest.mark.parametrize(
+    ("lower", "upper", "usual"),
+    [(-0.5, 9.0, (-0.5, np.pi)), (-1e6, 1e6, (-np.pi, np.pi)), (5.0, 6.0, (5.0, 6.0)),
+     (5.0, 1e6, (5.0, 5.0 + 2.0 * np.pi)), (-1e6, -5.0, (-5.0 - 2.0 * np.pi, -5.0))],
+)  # fmt: skip
+def test_the_usual_range_is_finite_and_at_most_a_turn_without_limits(lower, upper, usual):
+    limits = f'<limit lower="{lower}" upper="{upper}" effort="3" velocity="4"/>'
+    found = RobotModel(one_joint(limits=limits), "hand").usual_range
+    np.testing.assert_array_equal(found[:, 0], usual)
+
+
 def test_a_million_and_more_is_no_limit():
     limits = '<limit lower="-1e6" upper="2e7" effort="1e6" velocity="1e9"/>'
     model = RobotModel(one_joint(limits=limits), "hand")
