@@ -122,7 +122,7 @@ class Answer(AskedComparison):
 
     @property
     def fewest(self) -> int:
-        """The fewest pairs that can show a difference in so many comparisons."""
+        """The fewest pairs that can show a difference in a family of this size."""
         return fewest_pairs(min(self.level, ALPHA / max(self.family, 1)))
 
     @property

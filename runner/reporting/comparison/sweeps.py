@@ -85,7 +85,7 @@ class SweepComparison:
 
 
 def left_told(side: Measurements) -> str:
-    """Return how many cells of a sweep are not stored, the values that no stored cell has, and how to continue."""
+    """Return the number of cells that are not stored, the values that only these have, and the command for them."""
     of = f" of {side.name}" if side.name else ""
     cells = format_count(side.missing, f"cell{of} is", f"cells{of} are")
     without = f", so that none has {few(side.unseen, separator=' or ')}" if side.unseen else ""
