@@ -87,13 +87,14 @@ def _variations(subject: ChallengeSubject) -> Section | None:
     commands = dict(zip(sweep.hashes, map(run_command, sweep.overrides), strict=True))
     placed = list(_placed(made))
     blocks: list[ReportBlock] = []
-    if placed:
+    told = [(x, one) for x, one in placed if np.isfinite(_middle(made, one)[0])]
+    if told:
         caption = (
             f"Specification curve: differences in {title(made.question.metric)} sorted within each class "
-            f"({', '.join(CLASSES.values())}), with their intervals; below, the family that is changed. Grey: one or "
-            "both sides do not work. The line is the asked case."
+            f"({', '.join(CLASSES.values())}), with their intervals; below, the family that is changed. Without a dot "
+            "above: one or both sides do not work. The line is the asked case."
         )
-        panels = [_differences(made, placed, commands), _choices(placed)]
+        panels = [_differences(made, told, commands, _ends(placed)), _choices(placed)]
         blocks.append(Curves(literal(caption), panels, columns=1))
     return Section("Variations", [*blocks, variations_table(made)])
 
@@ -132,7 +133,8 @@ def _placed(made: Challenge) -> Iterator[tuple[float, AnsweredVariation]]:
     """Yield the abscissa of each variation that was tried: sorted within its class, with a gap between classes."""
     start = 0.0
     for kind in CLASSES:
-        found = sorted((one for one in class_of(made, kind) if one.judged), key=lambda one: _middle(made, one)[0])
+        some = [one for one in class_of(made, kind) if one.judged]
+        found = sorted(some, key=lambda one: float(np.nan_to_num(_middle(made, one)[0], nan=np.inf)))
         for place, one in enumerate(found):
             yield start + place, one
         start += len(found) + _GAP if found else 0.0
@@ -156,16 +158,17 @@ def _in_logarithms(made: Challenge) -> bool:
 
 
 def _differences(
-    made: Challenge, placed: Sequence[tuple[float, AnsweredVariation]], commands: Mapping[str, str]
+    made: Challenge,
+    told: Sequence[tuple[float, AnsweredVariation]],
+    commands: Mapping[str, str],
+    x_range: tuple[float, float],
 ) -> Panel:
     a, b = (side.name for side in made.question.sides)
-    words = dict.fromkeys(word_text(made, one) if one.judged is None else one.judged.word for _, one in placed)
     series = []
-    for word in words:
-        some = [(x, one) for x, one in placed if one.judged and one.judged.word == word]
+    for word in dict.fromkeys(one.judged.word for _, one in told if one.judged):
+        some = [(x, one) for x, one in told if one.judged and one.judged.word == word]
         middles = np.array([_middle(made, one) for _, one in some])
-        x, color = np.array([each for each, _ in some]), _COLORS.get(word, _GREY)
-        y = np.where(np.isnan(middles[:, 0]), 0.0, middles[:, 0])
+        x, y, color = np.array([each for each, _ in some]), middles[:, 0], _COLORS.get(word, _GREY)
         ends = np.column_stack([middles[:, 1:], np.full(len(x), np.nan)]).ravel()
         series.append(Series("", np.repeat(x, 3), ends, color=color))
         hints = [f"{one.variation.label}: {word_text(made, one)}; {_command(one, commands)}" for _, one in some]
@@ -174,13 +177,13 @@ def _differences(
     asked = made.fresh.log_ratio[0] if made.fresh and made.fresh.log_ratio and _in_logarithms(made) else None
     if asked is None and made.fresh and made.fresh.effect is not None:
         asked = (1.0 if made.question.is_fraction else 100.0) * made.fresh.effect
-    ends = np.array(_ends(placed))
+    ends = np.array(x_range)
     lines = [Series("", ends, np.zeros(2), "dotted", color=_GREY)]
     if asked is not None:
         lines.append(Series("asked case", ends, np.full(2, asked), "dashed", color=2))
     unit = f"logarithm of {b} / {a}" if _in_logarithms(made) else f"{b} - {a}"
     label = unit if _in_logarithms(made) or made.question.is_fraction else f"{unit} (%)"
-    return Panel("", "variations", label, [*lines, *series], x_range=_ends(placed))
+    return Panel("", "variations", label, [*lines, *series], x_range=x_range)
 
 
 def _choices(placed: Sequence[tuple[float, AnsweredVariation]]) -> Panel:

@@ -16,6 +16,7 @@ from runner.base.dotted_keys import split_override
 from runner.config.compose.compose import compose
 from runner.reporting.challenge.question import read_question
 from runner.reporting.challenge.words import TITLES, answer_text, scope_sentences
+from runner.reporting.document import Curves
 from runner.reporting.mathml import faulty
 from runner.reporting.stored import compose_report
 from runner.statistics.scope import first_pairs
@@ -383,6 +384,8 @@ def test_an_answer_of_which_one_side_has_no_value(cli, noise, tmp_path):
     assert {one.judged.word for one in made.found if one.judged} == {"only one works"}
     document = compose_report([made.folder], output=tmp_path)[0]
     assert said in document.abstract
+    blocks = [block for section in document.sections for block in section.blocks]
+    assert not any(isinstance(block, Curves) for block in blocks)  # no difference is known
     assert not faulty(document)
     assert "damaged" not in cli("results").out
     again = cli("check", made.folder, "--require-scope", "numbers")
