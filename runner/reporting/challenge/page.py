@@ -94,7 +94,7 @@ def _variations(subject: ChallengeSubject) -> Section | None:
             f"({', '.join(CLASSES.values())}), with their intervals; below, the family that is changed. Without a dot "
             "above: one or both sides do not work. The line is the asked case."
         )
-        panels = [_differences(made, told, commands, _ends(placed)), _choices(placed)]
+        panels = [_differences(made, told, commands, _ends(placed)), _choices(made, placed, commands)]
         blocks.append(Curves(literal(caption), panels, columns=1))
     return Section("Variations", [*blocks, variations_table(made)])
 
@@ -171,7 +171,7 @@ def _differences(
         x, y, color = np.array([each for each, _ in some]), middles[:, 0], _COLORS.get(word, _GREY)
         ends = np.column_stack([middles[:, 1:], np.full(len(x), np.nan)]).ravel()
         series.append(Series("", np.repeat(x, 3), ends, color=color))
-        hints = [f"{one.variation.label}: {word_text(made, one)}; {_command(one, commands)}" for _, one in some]
+        hints = [_hint(made, one, commands) for _, one in some]
         runs = [one.hashes[1] if len(one.hashes) > 1 else "" for _, one in some]
         series.append(Series(word, x, y, "points", color=color, hints=hints, runs=runs if all(runs) else ()))
     asked = made.fresh.log_ratio[0] if made.fresh and made.fresh.log_ratio and _in_logarithms(made) else None
@@ -186,13 +186,13 @@ def _differences(
     return Panel("", "variations", label, [*lines, *series], x_range=x_range)
 
 
-def _choices(placed: Sequence[tuple[float, AnsweredVariation]]) -> Panel:
+def _choices(made: Challenge, placed: Sequence[tuple[float, AnsweredVariation]], commands: Mapping[str, str]) -> Panel:
     """Return a row of dots for each family, in the order of the classes from above."""
     families = list(dict.fromkeys(one.variation.family for _, one in placed))[::-1]
     series = []
     for row, name in enumerate(families):
         x = np.array([each for each, one in placed if one.variation.family == name])
-        hints = [one.variation.label for _, one in placed if one.variation.family == name]
+        hints = [_hint(made, one, commands) for _, one in placed if one.variation.family == name]
         series.append(Series("", x, np.full(len(x), float(row)), "points", color=_GREY, hints=hints))
     names = [TITLES.get(name, name) for name in families]
     return Panel("", "variations", "", series, x_range=_ends(placed), y_names=names)
@@ -202,8 +202,9 @@ def _ends(placed: Sequence[tuple[float, AnsweredVariation]]) -> tuple[float, flo
     return placed[0][0] - 0.5, placed[-1][0] + 0.5
 
 
-def _command(one: AnsweredVariation, commands: Mapping[str, str]) -> str:
-    return commands.get(one.hashes[-1], "") if one.hashes else ""
+def _hint(made: Challenge, one: AnsweredVariation, commands: Mapping[str, str]) -> str:
+    command = commands.get(one.hashes[-1], "") if one.hashes else ""
+    return f"{one.variation.label}: {word_text(made, one)}; {command}"
 
 
 def turns_answer(made: Challenge, kinds: Sequence[str]) -> list[str]:
