@@ -64,7 +64,7 @@ def run(options: argparse.Namespace) -> int:
     from runner.store.cells import cell_names, save_baseline
     from runner.store.kinds import kind_of
     from runner.sweeps.rounding import RoundingSensitivity, find_sensitive
-    from runner.sweeps.status import told_if_at_work
+    from runner.sweeps.status import report_if_running
 
     if options.require_scope is not None or kind_of(options.folder) == "challenge":
         return _check_scope(options)
@@ -84,7 +84,7 @@ def run(options: argparse.Namespace) -> int:
         return _check_sweep(store.open_sweep(options.folder), baseline, markdown)
     if markdown:
         options.parser.error("--format markdown: only for the baseline of a sweep. Add --baseline FILE.")
-    with told_if_at_work(store.open_sweep(options.folder)) if kind_of(options.folder) != "run" else nullcontext():
+    with report_if_running(store.open_sweep(options.folder)) if kind_of(options.folder) != "run" else nullcontext():
         runs = store.open_runs(options.folder)
     judged = options.baseline is None and runs[0].spec is not None
     if options.max_failure_probability is not None and not judged:

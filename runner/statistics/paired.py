@@ -219,7 +219,7 @@ class PairedComparison:
     def _deviation(self) -> tuple[float, int] | None:
         """Standard deviation of the differences and its degrees of freedom.
 
-        None with fewer than three of them, or if a pair has no number: it has no scatter that would tell.
+        None with fewer than three of them, or if a pair has no number, which leaves the scatter unknown.
         """
         known = self.n >= 3 and not any(self.lost)
         return (float(np.std(self.b - self.a, ddof=1)), self.n - 1) if known else None

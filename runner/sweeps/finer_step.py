@@ -21,7 +21,7 @@ from runner.store.drawn import draws_nothing
 from runner.store.finished import finer_names, write_finer
 from runner.store.run import Run
 from runner.store.sweep import Sweep
-from runner.sweeps.status import told_if_at_work
+from runner.sweeps.status import report_if_running
 
 if TYPE_CHECKING:
     from runner.assembly.run_config import RunConfig
@@ -42,7 +42,7 @@ def work_out_sweep(sweep: Sweep) -> None:
         StoreError: if a run is missing or damaged, or the result cannot be written.
     """
     if len(sweep.hashes) <= MOST_RUNS and any(axis.name != _SEED for axis in axes_of(sweep.overrides)[0]):
-        with told_if_at_work(sweep):
+        with report_if_running(sweep):
             runs = list(sweep.runs())
         work_out(sweep.outputs, runs)
 

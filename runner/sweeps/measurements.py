@@ -22,7 +22,7 @@ from runner.store.run import Run
 from runner.store.sweep import InShard, Sweep
 from runner.sweeps.differing import Resolved, UnsweptDifference
 from runner.sweeps.gathering import Gathered
-from runner.sweeps.status import told_if_at_work
+from runner.sweeps.status import report_if_running
 
 
 @dataclass(frozen=True)
@@ -225,7 +225,7 @@ def measure_sweep(sweep: Sweep) -> Measurements:
 def _gather(sweep: Sweep) -> Gathered:
     gathered = Gathered(len(sweep.hashes))
     progress.begin("reading runs", len(sweep.hashes), "cells")
-    with told_if_at_work(sweep):
+    with report_if_running(sweep):
         for found in sweep.found():
             if isinstance(found, InShard):
                 gathered.add_shard(found.path, found.rows, found.cells)

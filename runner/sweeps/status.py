@@ -74,7 +74,7 @@ def find_status(sweep: Sweep) -> Status:
 
 
 @contextlib.contextmanager
-def told_if_at_work(sweep: Sweep) -> Iterator[None]:
+def report_if_running(sweep: Sweep) -> Iterator[None]:
     """Raise that a sweep is running, instead of that it lacks runs, if a command works on it.
 
     Raises:

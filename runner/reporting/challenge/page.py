@@ -87,14 +87,14 @@ def _variations(subject: ChallengeSubject) -> Section | None:
     commands = dict(zip(sweep.hashes, map(run_command, sweep.overrides), strict=True))
     placed = list(_placed(made))
     blocks: list[ReportBlock] = []
-    told = [(x, one) for x, one in placed if np.isfinite(_middle(made, one)[0])]
-    if told:
+    known = [(x, one) for x, one in placed if np.isfinite(_middle(made, one)[0])]
+    if known:
         caption = (
             f"Specification curve: differences in {title(made.question.metric)} sorted within each class "
             f"({', '.join(CLASSES.values())}), with their intervals; below, the family that is changed. Without a dot "
             "above: one or both sides do not work. The line is the asked case."
         )
-        panels = [_differences(made, told, commands, _ends(placed)), _choices(made, placed, commands)]
+        panels = [_differences(made, known, commands, _ends(placed)), _choices(made, placed, commands)]
         blocks.append(Curves(literal(caption), panels, columns=1))
     return Section("Variations", [*blocks, variations_table(made)])
 
@@ -159,14 +159,14 @@ def _in_logarithms(made: Challenge) -> bool:
 
 def _differences(
     made: Challenge,
-    told: Sequence[tuple[float, AnsweredVariation]],
+    known: Sequence[tuple[float, AnsweredVariation]],
     commands: Mapping[str, str],
     x_range: tuple[float, float],
 ) -> Panel:
     a, b = (side.name for side in made.question.sides)
     series = []
-    for word in dict.fromkeys(one.judged.word for _, one in told if one.judged):
-        some = [(x, one) for x, one in told if one.judged and one.judged.word == word]
+    for word in dict.fromkeys(one.judged.word for _, one in known if one.judged):
+        some = [(x, one) for x, one in known if one.judged and one.judged.word == word]
         middles = np.array([_middle(made, one) for _, one in some])
         x, y, color = np.array([each for each, _ in some]), middles[:, 0], _COLORS.get(word, _GREY)
         ends = np.column_stack([middles[:, 1:], np.full(len(x), np.nan)]).ravel()

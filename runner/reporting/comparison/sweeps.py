@@ -78,13 +78,13 @@ class SweepComparison:
             if alone:
                 yield f"{format_count(len(alone), 'cell is', 'cells are')} only in {side.name}: {_some(alone)}"
             if side.missing:
-                yield left_told(side)
+                yield missing_cells_text(side)
             if side.failed:
                 failed = format_count(side.failed, "cell", "cells")
                 yield f"{failed} of {side.name} failed; {FAILED}"
 
 
-def left_told(side: Measurements) -> str:
+def missing_cells_text(side: Measurements) -> str:
     """Return the number of cells that are not stored, the values that only these have, and the command for them."""
     of = f" of {side.name}" if side.name else ""
     cells = format_count(side.missing, f"cell{of} is", f"cells{of} are")

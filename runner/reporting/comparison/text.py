@@ -21,7 +21,7 @@ from runner.reporting.comparison.sweeps import (
     compare_runs,
     counts_by_sign,
     format_count,
-    left_told,
+    missing_cells_text,
     noise_alone,
     size_told,
 )
@@ -44,7 +44,7 @@ def level_lines(side: Measurements, axis: str, answers: Sequence[Answer], everyt
     """Yield the comparison of the levels of an axis: answers first; with `everything` all metrics and the method."""
     yield one_line(f"{side.folder}  {size_told(side)}; by {axis}")
     if side.missing:
-        yield one_line(left_told(side))
+        yield one_line(missing_cells_text(side))
     if side.failed:
         yield f"{format_count(side.failed, 'cell', 'cells')} failed; {FAILED}"
     along = [one for one in side.differences if axis in one.axes or not one.axes]
